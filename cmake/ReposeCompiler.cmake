@@ -1,0 +1,23 @@
+# How every file is compiled. Same bits on every machine: no fast-math, no contraction that the compiler
+# chooses (fused operations are written in the kernels), no flags that depend on the building machine.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(REPOSE_CCACHE ccache)
+if(REPOSE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${REPOSE_CCACHE})
+endif()
+
+add_library(repose_flags INTERFACE)
+target_compile_options(repose_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+  -Wno-restrict  # g++ 12 warns of std::string operator+ (GCC bug 105329)
+  -ffp-contract=off -fno-math-errno)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # Highway needs a vector baseline; every x86-64 since 2006 has this one.
+  target_compile_options(repose_flags INTERFACE -mssse3)
+endif()
+if(REPOSE_VALIDATION)
+  target_compile_definitions(repose_flags INTERFACE REPOSE_VALIDATION)
+endif()

@@ -1,0 +1,30 @@
+# The floors of the house. A floor is a static library that sees only the floors it links: each gets an
+# include root of its own holding a link to its folder and nothing else, so an include that runs up the
+# house does not compile.
+#
+#   repose_floor(state FOLDER engine/state SOURCES a.cpp b.cpp LINKS base kernels PRIVATE_LINKS repose_openvdb)
+function(repose_floor name)
+  cmake_parse_arguments(FLOOR "" "FOLDER" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  set(root "${PROJECT_BINARY_DIR}/floors/${name}")
+  get_filename_component(parent "${root}/${FLOOR_FOLDER}" DIRECTORY)
+  file(MAKE_DIRECTORY "${parent}")
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${FLOOR_FOLDER}" "${root}/${FLOOR_FOLDER}" SYMBOLIC)
+
+  set(floors)
+  foreach(link IN LISTS FLOOR_LINKS)
+    if(TARGET repose_${link})
+      list(APPEND floors repose_${link})
+    else()
+      list(APPEND floors ${link})
+    endif()
+  endforeach()
+  if(FLOOR_SOURCES)
+    add_library(repose_${name} STATIC ${FLOOR_SOURCES})
+    target_include_directories(repose_${name} PUBLIC "${root}")
+    target_link_libraries(repose_${name} PUBLIC ${floors} PRIVATE repose_flags ${FLOOR_PRIVATE_LINKS})
+  else()
+    add_library(repose_${name} INTERFACE)
+    target_include_directories(repose_${name} INTERFACE "${root}")
+    target_link_libraries(repose_${name} INTERFACE ${floors})
+  endif()
+endfunction()

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that are missing: those to build and run, and with --tests those that the tests read
+# files with. Does nothing where everything is there.
+set -euo pipefail
+
+packages=(g++ cmake ninja-build pkg-config ccache libopenvdb-dev libboost-iostreams-dev libeigen3-dev libtbb-dev
+          libhwy-dev libjsoncpp-dev libcli11-dev libmuparser-dev libpng-dev zlib1g-dev ffmpeg)
+if [ "${1:-}" = "--tests" ]; then
+  packages+=(libgtest-dev libgmock-dev libbenchmark-dev libopenvdb-tools python3 python3-meshio python3-vtk9)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "please install as root: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! { "${as_root[@]}" apt-get update && "${as_root[@]}" apt-get install -y --no-install-recommends "${missing[@]}"; } \
+    >"$log" 2>&1; then
+  tail -20 "$log" >&2
+  echo "installing failed; the packages are those of Debian 12" >&2
+  exit 1
+fi
