@@ -1,0 +1,24 @@
+// Repose: the particles of one block as kernels see them: a structure of arrays, one pointer per component.
+// Positions are in cells, relative to the origin of the particles' block, so that no digit is lost far from the
+// origin of the scene; everything else is in SI units.
+#pragma once
+
+#include <cstddef>
+
+namespace repose {
+
+/// Components of the channels that every particle has. Matrices are stored by rows; the symmetric strain as
+/// xx xy xz yy yz zz.
+inline constexpr int kAffineComponents = 9;
+inline constexpr int kStrainComponents = 6;
+
+template <class Real>
+struct ParticleSpan {
+  Real* position[3];                ///< cells, from the block's origin
+  Real* velocity[3];                ///< m/s
+  Real* affine[kAffineComponents];  ///< C, 1/s: the local velocity gradient that APIC carries
+  Real* strain[kStrainComponents];  ///< Hencky strain log(b)/2 of the elastic part, no unit
+  std::size_t count;
+};
+
+}  // namespace repose

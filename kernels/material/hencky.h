@@ -1,0 +1,81 @@
+// Repose: the Hencky elastic solid.
+//
+//   strain energy   psi = mu eps : eps + (lambda/2) tr(eps)^2,   eps = log(b)/2, b = F F^T   (Klar et al. 2016, eq. 25)
+//   Kirchhoff       tau = d psi / d eps = 2 mu eps + lambda tr(eps) I                        (eq. 26, with P F^T = tau)
+//
+// The strain is stored, not F: tau is linear in it, it needs 6 numbers, and no step size is baked into it.
+// Along one axis tau/s has its maximum at a stretch of e and softens beyond: not a law for rubber bands.
+#ifndef REPOSE_KERNELS_MATERIAL_HENCKY_H_PARAMETERS
+#define REPOSE_KERNELS_MATERIAL_HENCKY_H_PARAMETERS
+#include "kernels/material/material.h"
+
+namespace repose {
+
+/// An elastic solid.
+struct HenckyParameters {
+  Elasticity elasticity{.density = 1000.0, .youngs_modulus = 1.0e6, .poisson_ratio = 0.3};
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    elasticity.describe(fields);
+  }
+};
+
+/// What the kernels need of it.
+template <class Real>
+struct HenckyConstants {
+  Real mu, lambda;  // Pa
+  explicit HenckyConstants(const Elasticity& elasticity)
+      : mu(static_cast<Real>(elasticity.mu())), lambda(static_cast<Real>(elasticity.lambda())) {}
+};
+
+}  // namespace repose
+#endif
+
+// For kernels, once per instruction set: the including file has included Highway before.
+#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_MATERIAL_HENCKY_H) == defined(HWY_TARGET_TOGGLE))
+#ifdef REPOSE_KERNELS_MATERIAL_HENCKY_H
+#undef REPOSE_KERNELS_MATERIAL_HENCKY_H
+#else
+#define REPOSE_KERNELS_MATERIAL_HENCKY_H
+#endif
+
+#include "kernels/base/eigen_sym3.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace repose {
+namespace HWY_NAMESPACE {
+
+/// Singular values of F below this are taken as this: a crushed particle keeps a finite strain.
+template <class T>
+inline constexpr T kSmallestStretch = sizeof(T) == 4 ? T(1e-3) : T(1e-4);
+
+/// Elastic trial strain of the step: b' = (I + dt grad v) b (I + dt grad v)^T (Klar et al. 2016, eq. 16).
+template <class N>
+REPOSE_INLINE Sym3<N> hencky_trial(const Sym3<N>& eps, const Mat3<N>& dt_grad_v) {
+  constexpr auto kFloor = kSmallestStretch<Scalar<N>> * kSmallestStretch<Scalar<N>>;
+  return half_log1p(push_forward(dt_grad_v, expm1_twice(eps)), kFloor);
+}
+
+/// tau = 2 mu eps + lambda tr(eps) I
+template <class N>
+REPOSE_INLINE Sym3<N> hencky_stress(const HenckyConstants<Scalar<N>>& c, const Sym3<N>& eps) {
+  return plus_identity(N(c.mu + c.mu) * eps, N(c.lambda) * trace(eps));
+}
+
+struct HenckyElastic {
+  template <class T>
+  using Constants = HenckyConstants<T>;
+  static constexpr bool kPlastic = false;
+
+  template <class N>
+  REPOSE_INLINE static Sym3<N> stress(const HenckyConstants<Scalar<N>>& c, const Sym3<N>& eps) {
+    return hencky_stress(c, eps);
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace repose
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,100 @@
+// Repose: the constitutive passes: trial strain, return to the yield surface, stress. One pass each, so that an
+// effect may act between them; all work on the strain channel in place, a pack of particles at a time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/pass/material.cpp"
+#include "kernels/base/targets.h"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+
+#include "kernels/material/materials.h"
+#include "kernels/pass/tables.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace repose {
+namespace HWY_NAMESPACE {
+namespace {
+
+template <class T>
+REPOSE_INLINE Sym3<Pack<T>> load_sym3(T* const from[6], std::size_t first, std::size_t lanes) {
+  const auto entry = [&](int k) HWY_ATTR { return Pack<T>::load_first(from[k] + first, lanes); };
+  return {entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+}
+
+template <class T>
+REPOSE_INLINE void store_sym3(const Sym3<Pack<T>>& a, T* const to[6], std::size_t first, std::size_t lanes) {
+  a.xx.store_first(to[0] + first, lanes);
+  a.xy.store_first(to[1] + first, lanes);
+  a.xz.store_first(to[2] + first, lanes);
+  a.yy.store_first(to[3] + first, lanes);
+  a.yz.store_first(to[4] + first, lanes);
+  a.zz.store_first(to[5] + first, lanes);
+}
+
+/// Calls body(first, lanes) for each pack of `count` particles.
+template <class T, class Body>
+REPOSE_INLINE void for_each_pack(std::size_t count, Body body) {
+  for (std::size_t first = 0; first < count; first += Pack<T>::size()) {
+    const std::size_t left = count - first;
+    body(first, left < Pack<T>::size() ? left : Pack<T>::size());
+  }
+}
+
+template <class T>
+void trial(const MaterialInput<T>& in) {
+  const Pack<T> dt(in.dt);
+  for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+    Mat3<Pack<T>> step;
+    HWY_UNROLL(9)
+    for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * Pack<T>::load_first(in.affine[k] + first, lanes);
+    store_sym3(hencky_trial(load_sym3<T>(in.strain, first, lanes), step), in.strain, first, lanes);
+  });
+}
+
+template <class Material, class T>
+void project(const MaterialInput<T>& in) {
+  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
+  for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+    const auto strain = load_sym3<T>(in.strain, first, lanes);
+    store_sym3(Material::project(constants, strain), in.strain, first, lanes);
+  });
+}
+
+template <class Material, class T>
+void stress(const MaterialInput<T>& in) {
+  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
+  for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+    const auto strain = load_sym3<T>(in.strain, first, lanes);
+    store_sym3(Material::stress(constants, strain), in.stress, first, lanes);
+  });
+}
+
+template <class Material, class T>
+MaterialKernels<T> material_kernels() {
+  MaterialKernels<T> table{trial<T>, nullptr, stress<Material, T>};
+  if constexpr (Material::kPlastic) table.project = project<Material, T>;
+  return table;
+}
+
+template <class T>
+void fill_precision(Kernels<T>& table) {
+  static_assert(std::tuple_size_v<Materials> == Kernels<T>::kMaterials);
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    ((table.material[k] = material_kernels<std::tuple_element_t<k, Materials>, T>()), ...);
+  }(std::make_index_sequence<std::tuple_size_v<Materials>>());
+}
+
+void fill(KernelTables& tables) {
+  fill_precision(tables.single);
+  fill_precision(tables.dual);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace repose
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace repose {
+REPOSE_DEFINE_FILL(material)
+}  // namespace repose
+#endif

@@ -1,0 +1,127 @@
+// Repose: passes over particles that belong to no material and no transfer: moving them, deciding whether a step
+// may be accepted, and the two halves of the volume correction.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/pass/particles.cpp"
+#include "kernels/base/targets.h"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+
+#include "kernels/base/small_matrix.h"
+#include "kernels/pass/tables.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace repose {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// x += dt v-bar (Klar et al. 2016, eq. 13), in cells.
+template <class T>
+void advance(const ParticleSpan<T>& particles, const T* const velocity[3], T cells_per_velocity, Motion<T>& motion) {
+  using P = Pack<T>;
+  P speed(motion.speed_squared), gradient(motion.gradient_squared), low(motion.lowest), high(motion.highest);
+  const P scale(cells_per_velocity);
+  for (std::size_t first = 0; first < particles.count; first += P::size()) {
+    const std::size_t left = particles.count - first;
+    const std::size_t lanes = left < P::size() ? left : P::size();
+    P square(T(0)), affine(T(0));
+    HWY_UNROLL(3)
+    for (int axis = 0; axis < 3; ++axis) {
+      const P v = P::load_first(particles.velocity[axis] + first, lanes);
+      square = fma(v, v, square);
+      const P x = fma(scale, P::load_first(velocity[axis] + first, lanes),
+                      P::load_first(particles.position[axis] + first, lanes));
+      x.store_first(particles.position[axis] + first, lanes);
+      low = min(low, x);  // lanes beyond the last particle hold 0, which lies in every block
+      high = max(high, x);
+    }
+    HWY_UNROLL(9)
+    for (int k = 0; k < 9; ++k) {
+      const P c = P::load_first(particles.affine[k] + first, lanes);
+      affine = fma(c, c, affine);
+    }
+    speed = max(speed, square);
+    gradient = max(gradient, affine);
+  }
+  motion = {largest(speed), largest(gradient), smallest(low), largest(high)};
+}
+
+template <class T>
+std::size_t inspect(const T* const velocity[3], const T* const affine[9], std::size_t count, T dt, T spacing) {
+  using P = Pack<T>;
+  const P step(dt), most(spacing / dt), zero(T(0)), one(T(1));
+  for (std::size_t first = 0; first < count; first += P::size()) {
+    const std::size_t left = count - first;
+    const std::size_t lanes = left < P::size() ? left : P::size();
+    Mat3<P> map;
+    HWY_UNROLL(9)
+    for (int k = 0; k < 9; ++k) {
+      map.m[k / 3][k % 3] = step * P::load_first(affine[k] + first, lanes) + (k % 4 == 0 ? one : zero);
+    }
+    auto good = determinant(map) > zero;  // false for a NaN
+    HWY_UNROLL(3)
+    for (int axis = 0; axis < 3; ++axis) {
+      good = good & (abs(P::load_first(velocity[axis] + first, lanes)) <= most);
+    }
+    if (!any_first(!good, lanes)) continue;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (any_first(!good, lane + 1)) return first + lane;
+    }
+  }
+  return count;
+}
+
+/// eps <- eps + (vc/3) I before the return map; the trace of the trial strain is kept for the second half
+/// (Tampubolon et al. 2017, eq. 26).
+template <class T>
+void open_volume(T* const strain[6], const T* gained, T* trace_of_trial, std::size_t count) {
+  using P = Pack<T>;
+  for (std::size_t first = 0; first < count; first += P::size()) {
+    const std::size_t left = count - first;
+    const std::size_t lanes = left < P::size() ? left : P::size();
+    const P xx = P::load_first(strain[0] + first, lanes), yy = P::load_first(strain[3] + first, lanes),
+            zz = P::load_first(strain[5] + first, lanes);
+    const P third = P(T(1) / 3) * P::load_first(gained + first, lanes);
+    (xx + yy + zz).store_first(trace_of_trial + first, lanes);
+    (xx + third).store_first(strain[0] + first, lanes);
+    (yy + third).store_first(strain[3] + first, lanes);
+    (zz + third).store_first(strain[5] + first, lanes);
+  }
+}
+
+/// vc <- vc + tr(trial) - tr(H) after it, with the sign that keeps tr(H) + vc what tr(trial) + vc was.
+template <class T>
+void close_volume(const T* const strain[6], T* gained, const T* trace_of_trial, std::size_t count) {
+  using P = Pack<T>;
+  for (std::size_t first = 0; first < count; first += P::size()) {
+    const std::size_t left = count - first;
+    const std::size_t lanes = left < P::size() ? left : P::size();
+    const P kept = P::load_first(strain[0] + first, lanes) + P::load_first(strain[3] + first, lanes) +
+                   P::load_first(strain[5] + first, lanes);
+    const P total = P::load_first(gained + first, lanes) + P::load_first(trace_of_trial + first, lanes);
+    (total - kept).store_first(gained + first, lanes);
+  }
+}
+
+template <class T>
+void fill_precision(Kernels<T>& table) {
+  table.advance = advance<T>;
+  table.inspect = inspect<T>;
+  table.open_volume = open_volume<T>;
+  table.close_volume = close_volume<T>;
+}
+
+void fill(KernelTables& tables) {
+  fill_precision(tables.single);
+  fill_precision(tables.dual);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace repose
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace repose {
+REPOSE_DEFINE_FILL(particles)
+}  // namespace repose
+#endif

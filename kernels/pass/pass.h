@@ -1,0 +1,129 @@
+// Repose: the kernels as the engine calls them: plain function pointers, one table per instruction set and
+// precision. The unit is a span of particles of one block, or one block of nodes; data stay in cache from pass to
+// pass, so materials, transfers and stencils multiply here as calls and not as templates.
+// Nothing in kernels/ allocates, throws, logs or knows of threads.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+
+#include "kernels/layout/node_block.h"
+#include "kernels/layout/particle_span.h"
+
+namespace repose {
+
+/// Instruction sets, best last.
+enum class Target { kBaseline, kAvx2, kAvx512 };
+inline constexpr int kTargets = 3;
+
+/// Name for reports and for the option that forces one: "baseline", "avx2", "avx512".
+const char* target_name(Target target);
+/// Whether this machine can run it.
+bool target_supported(Target target);
+/// The best one that it can.
+Target best_target();
+
+/// Particles per call: what a pass hands to the next through scratch stays in the first cache level.
+inline constexpr std::size_t kChunk = 256;
+
+/// What both transfers need to know of the lattice.
+template <class Real>
+struct Lattice {
+  Real spacing;       ///< dx, m
+  Real axis_scale[3]; ///< D^-1 dx in 1/m per axis; 0 on the single-node axis of plane strain
+  int flat_axis;      ///< that axis, or -1
+};
+
+/// Particles to nodes.
+template <class Real>
+struct ScatterInput {
+  ParticleSpan<Real> particles;
+  const Real* stress[kStrainComponents];  ///< Kirchhoff stress tau, Pa
+  Real mass;                              ///< m of a particle, kg
+  Real impulse_volume;                    ///< dt V0, s m^3
+  Lattice<Real> lattice;
+};
+
+/// Nodes to particles. Writes v and C of every particle of the span.
+template <class Real>
+struct GatherInput {
+  ParticleSpan<Real> particles;  ///< only positions are read
+  Lattice<Real> lattice;
+  Real* velocity[3];
+  Real* affine[kAffineComponents];
+};
+
+/// What moving a span of particles did to it.
+template <class Real>
+struct Motion {
+  Real speed_squared = 0;     ///< largest |v|^2, m^2/s^2
+  Real gradient_squared = 0;  ///< largest |C|^2 (Frobenius), 1/s^2
+  Real lowest = 0;            ///< least and largest position component, cells from the block's origin
+  Real highest = 0;
+};
+
+/// One material's passes over a span, all on the strain channel in place.
+template <class Real>
+struct MaterialInput {
+  const void* constants;                         ///< the material's Constants<Real>
+  Real* strain[kStrainComponents];
+  const Real* affine[kAffineComponents];         ///< velocity gradient, 1/s
+  Real* stress[kStrainComponents];               ///< out, Pa
+  Real dt;
+  std::size_t count;
+};
+
+template <class Real>
+struct MaterialKernels {
+  void (*trial)(const MaterialInput<Real>&);    ///< strain <- elastic trial strain after dt of the gradient
+  void (*project)(const MaterialInput<Real>&);  ///< strain <- the strain that the yield surface allows; may be null
+  void (*stress)(const MaterialInput<Real>&);   ///< stress <- tau(strain)
+};
+
+template <class Real>
+struct TransferKernels {
+  /// Adds mass and momentum to the arena; sets the bit x * 8 + y of `rows` for each row touched; returns the runs.
+  std::size_t (*scatter)(const ScatterInput<Real>&, Real* arena, std::uint64_t& rows);
+  void (*gather)(const GatherInput<Real>&, const Real* arena);
+};
+
+/// Bounds of the velocities of a block's active nodes.
+template <class Real>
+struct VelocityBounds {
+  Real low[3];
+  Real high[3];
+  bool empty;   ///< no active node
+  bool finite;  ///< every value of every active node is finite
+};
+
+/// Every kernel of one instruction set and precision.
+template <class Real>
+struct Kernels {
+  static constexpr int kStencils = 1, kTransfers = 1, kMaterials = 2;
+  TransferKernels<Real> transfer[kStencils][kTransfers];
+  MaterialKernels<Real> material[kMaterials];
+
+  void (*advance)(const ParticleSpan<Real>&, const Real* const velocity[3], Real cells_per_velocity, Motion<Real>&);
+  /// Index of the first particle whose trial motion must not be accepted, or count: it would cross more than a cell,
+  /// det(I + dt grad v) <= 0, or a value is not finite.
+  std::size_t (*inspect)(const Real* const velocity[3], const Real* const affine[9], std::size_t count, Real dt,
+                         Real spacing);
+  void (*open_volume)(Real* const strain[6], const Real* gained, Real* trace, std::size_t count);
+  void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
+
+  void (*add_arena)(const Real* arena, std::uint64_t rows, Real* const blocks[kNeighbours]);
+  void (*load_arena)(Real* arena, std::uint64_t rows, const Real* const blocks[kNeighbours]);
+
+  /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 + y*4 + z.
+  std::uint64_t (*normalize)(Real* nodes, Real least_mass);
+  void (*accelerate)(Real* nodes, const Real change[3]);
+  void (*bound)(const Real* nodes, VelocityBounds<Real>&);
+};
+
+/// The table of an instruction set that the machine supports. Real is float or double.
+template <class Real>
+const Kernels<Real>& kernels(Target target);
+
+}  // namespace repose

@@ -1,0 +1,38 @@
+// Repose: how the files of this folder fill the tables of pass.h; nothing outside it includes this.
+#pragma once
+
+#include "kernels/pass/pass.h"
+
+namespace repose {
+
+/// The tables of both precisions for one instruction set.
+struct KernelTables {
+  Kernels<float> single;
+  Kernels<double> dual;
+
+  template <class Real>
+  Kernels<Real>& of();
+};
+template <>
+inline Kernels<float>& KernelTables::of<float>() { return single; }
+template <>
+inline Kernels<double>& KernelTables::of<double>() { return dual; }
+
+void fill_scatter(Target target, KernelTables& tables);
+void fill_gather(Target target, KernelTables& tables);
+void fill_material(Target target, KernelTables& tables);
+void fill_particles(Target target, KernelTables& tables);
+void fill_nodes(Target target, KernelTables& tables);
+
+}  // namespace repose
+
+/// Defines repose::fill_NAME from the function `fill` of each instruction set. The choice is an argument, not
+/// Highway's process-wide one: two engines in one process may run different sets.
+#define REPOSE_DEFINE_FILL(name)                                                      \
+  HWY_EXPORT(fill);                                                                   \
+  void fill_##name(Target target, KernelTables& tables) {                             \
+    hwy::ChosenTarget chosen;                                                         \
+    const std::int64_t bits[kTargets] = {HWY_STATIC_TARGET, HWY_AVX2, HWY_AVX3};      \
+    chosen.Update(bits[static_cast<int>(target)]);                                    \
+    (*(HWY_DISPATCH_TABLE(fill)[chosen.GetIndex()]))(tables);                         \
+  }
