@@ -1,0 +1,57 @@
+// Repose: what both samplings share: the cells that a shape may fill, a lattice of offsets, and random numbers
+// that are the same on every machine (std::uniform_real_distribution is not).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "engine/geometry/seeding.h"
+
+namespace repose {
+
+/// Offsets are whole multiples of 1 / kLattice of a cell, so float and double hold the same particle, and
+/// nothing below 1 rounds up to 1.
+constexpr std::int64_t kLattice = std::int64_t{1} << 20;
+constexpr double kLatticeStep = 1.0 / static_cast<double>(kLattice);
+
+/// One step of SplitMix64 (Steele, Lea and Flood 2014): a bijection that leaves no pattern of its argument.
+inline std::uint64_t mix(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// Cells from `lower` up to, not with, `upper`, and where they lie in space.
+struct CellBox {
+  Index3 lower{};
+  Index3 upper{};
+  double spacing = 0.0;
+  int flat_axis = -1;  ///< its one cell is 0, its offset a half, its coordinate in space 0; -1 in 3D
+
+  int dimension() const { return flat_axis < 0 ? 3 : 2; }
+
+  Vec3 position(const Index3& cell, const std::array<double, 3>& offset) const {
+    Vec3 x;
+    for (int k = 0; k < 3; ++k) x[k] = k == flat_axis ? 0.0 : (cell[k] + offset[k]) * spacing;
+    return x;
+  }
+  Vec3 middle(const Index3& cell) const { return position(cell, {0.5, 0.5, 0.5}); }
+
+  /// Distance from the middle of a cell to its corners.
+  double cell_radius() const { return 0.5 * spacing * std::sqrt(static_cast<double>(dimension())); }
+
+  /// Calls visit(cell) in order of x, then y, then z.
+  template <class Visit>
+  void for_each_cell(const Visit& visit) const {
+    Index3 cell;
+    for (cell[0] = lower[0]; cell[0] < upper[0]; ++cell[0]) {
+      for (cell[1] = lower[1]; cell[1] < upper[1]; ++cell[1]) {
+        for (cell[2] = lower[2]; cell[2] < upper[2]; ++cell[2]) visit(cell);
+      }
+    }
+  }
+};
+
+}  // namespace repose

@@ -1,0 +1,183 @@
+// Repose: the checkpoint file: a magic line, then chunks, each [name, size, checksum] and its bytes, little endian.
+#include "engine/io/checkpoint.h"
+
+#include <zlib.h>
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <type_traits>
+
+#include "engine/io/atomic_file.h"
+
+namespace repose {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "checkpoints are written as memory lies");
+
+constexpr char kMagic[16] = "REPOSE STATE 1\n";
+
+struct ChunkHead {
+  char name[16] = {};
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;
+};
+
+/// What the first chunk holds.
+struct Head {
+  char scene_hash[32] = {};
+  std::int32_t precision_bytes = 0;
+  std::int32_t sets = 0;
+  std::uint64_t particles = 0;
+  std::uint64_t owners = 0;
+  Counters counters;
+};
+static_assert(std::is_trivially_copyable_v<Head>);
+
+std::uint64_t checksum_of(const void* data, std::size_t bytes) {
+  return crc32_z(crc32_z(0, nullptr, 0), static_cast<const Bytef*>(data), bytes);
+}
+
+Result<void> write_chunk(AtomicFile& file, const std::string& name, const void* data, std::size_t bytes) {
+  ChunkHead head;
+  std::strncpy(head.name, name.c_str(), sizeof head.name - 1);
+  head.bytes = bytes;
+  head.checksum = checksum_of(data, bytes);
+  if (auto written = file.write(&head, sizeof head); !written) return written;
+  return file.write(data, bytes);
+}
+
+/// Reads chunks in the order in which they were written; every error names file and chunk.
+class ChunkReader {
+ public:
+  static Result<ChunkReader> open(const std::string& path) {
+    ChunkReader reader(path);
+    if (!reader.file_) return Error{ErrorKind::kNoInput, "cannot be read; is the path right?", path};
+    char magic[sizeof kMagic];
+    reader.file_.read(magic, sizeof magic);
+    if (!reader.file_ || std::memcmp(magic, kMagic, sizeof magic) != 0) {
+      return Error{ErrorKind::kIo, "is not a checkpoint of this version of Repose", path};
+    }
+    return reader;
+  }
+
+  Result<void> read(const std::string& name, void* data, std::size_t bytes) {
+    ChunkHead head;
+    file_.read(reinterpret_cast<char*>(&head), sizeof head);
+    const bool named = file_ && name == std::string(head.name, strnlen(head.name, sizeof head.name));
+    if (!named || head.bytes != bytes) return damaged(name, "is missing or has another size");
+    file_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes));
+    if (!file_) return damaged(name, "is cut short");
+    if (checksum_of(data, bytes) != head.checksum) return damaged(name, "does not have its checksum");
+    return {};
+  }
+
+ private:
+  explicit ChunkReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {}
+  Error damaged(const std::string& chunk, const char* how) const {
+    return {ErrorKind::kIo, "chunk '" + chunk + "' " + how + "; use an older checkpoint", path_};
+  }
+
+  std::string path_;
+  std::ifstream file_;
+};
+
+/// Visits every array of a set with the name of its chunk.
+template <class Set, class Visit>
+Result<void> for_each_array(Set& set, std::size_t k, Visit visit) {
+  Result<void> result;
+  const std::string prefix = "set" + std::to_string(k) + ".";
+  int channel = 0;
+  const auto one = [&](const std::string& name, auto& array) {
+    if (!result) return;
+    result = visit(prefix + name, array.data(), array.size() * sizeof(array[0]));
+  };
+  one("begin", set.begin);
+  one("id", set.id);
+  set.for_each_real([&](auto& array) { one(std::to_string(channel++), array); });
+  return result;
+}
+
+Result<Head> read_head(ChunkReader& reader) {
+  Head head;
+  if (auto read = reader.read("head", &head, sizeof head); !read) return read.error();
+  return head;
+}
+
+}  // namespace
+
+template <class Real>
+Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_hash, const std::string& path) {
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  if (auto written = file->write(kMagic, sizeof kMagic); !written) return written;
+  Head head;
+  std::strncpy(head.scene_hash, scene_hash.c_str(), sizeof head.scene_hash - 1);
+  head.precision_bytes = sizeof(Real);
+  head.sets = static_cast<std::int32_t>(state.sets.size());
+  head.particles = state.particles();
+  head.owners = state.grid.owners().size();
+  head.counters = state.counters;
+  if (auto written = write_chunk(*file, "head", &head, sizeof head); !written) return written;
+  std::vector<Index3> owners;
+  for (const std::int32_t owner : state.grid.owners()) {
+    owners.push_back(state.grid.blocks()[static_cast<std::size_t>(owner)]);
+  }
+  if (auto written = write_chunk(*file, "blocks", owners.data(), owners.size() * sizeof(Index3)); !written) {
+    return written;
+  }
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    auto written = for_each_array(state.sets[k], k, [&](const std::string& name, const void* data, std::size_t bytes) {
+      return write_chunk(*file, name, data, bytes);
+    });
+    if (!written) return written;
+  }
+  return file->commit();
+}
+
+template <class Real>
+Result<void> load_checkpoint(const std::string& path, const std::string& scene_hash, State<Real>& state) {
+  auto reader = ChunkReader::open(path);
+  if (!reader) return reader.error();
+  auto head = read_head(*reader);
+  if (!head) return head.error();
+  if (scene_hash != head->scene_hash) {
+    return Error{ErrorKind::kBadScene,
+                 "belongs to another scene (hash " + std::string(head->scene_hash) + ", this one is " + scene_hash + ")",
+                 path};
+  }
+  if (head->precision_bytes != sizeof(Real) || head->sets != static_cast<std::int32_t>(state.sets.size()) ||
+      head->particles != state.particles()) {
+    return Error{ErrorKind::kBadScene, "holds other particles, or another precision, than this scene", path};
+  }
+  std::vector<Index3> owners(head->owners);
+  if (auto read = reader->read("blocks", owners.data(), owners.size() * sizeof(Index3)); !read) return read;
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    state.sets[k].begin.resize(head->owners + 1);
+    auto read = for_each_array(state.sets[k], k, [&](const std::string& name, void* data, std::size_t bytes) {
+      return reader->read(name, data, bytes);
+    });
+    if (!read) return read;
+  }
+  state.counters = head->counters;
+  state.grid.build(owners, state.topology);
+  state.nodes.resize(state.grid.size());
+  state.rows_touched.assign(state.grid.owners().size(), 0);
+  return {};
+}
+
+Result<CheckpointHeader> read_checkpoint_header(const std::string& path) {
+  auto reader = ChunkReader::open(path);
+  if (!reader) return reader.error();
+  auto head = read_head(*reader);
+  if (!head) return head.error();
+  return CheckpointHeader{head->scene_hash, head->precision_bytes, head->particles, head->counters};
+}
+
+template Result<void> save_checkpoint(const State<float>&, const std::string&, const std::string&);
+template Result<void> save_checkpoint(const State<double>&, const std::string&, const std::string&);
+template Result<void> load_checkpoint(const std::string&, const std::string&, State<float>&);
+template Result<void> load_checkpoint(const std::string&, const std::string&, State<double>&);
+
+}  // namespace repose

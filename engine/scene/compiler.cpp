@@ -1,0 +1,267 @@
+#include "engine/scene/compiler.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "engine/geometry/seeding.h"
+#include "engine/state/block_order.h"
+#include "engine/step/transfer_stages.h"
+#include "kernels/layout/stencil.h"
+
+namespace repose {
+namespace {
+
+TransferConstants transfer_constants(const Scene& scene) {
+  return {static_cast<int>(scene.grid.stencil), static_cast<int>(scene.grid.transfer), QuadraticStencil::kBaseShift,
+          QuadraticStencil::kInverseD};
+}
+
+Topology make_topology(const Scene& scene) {
+  Topology topology;
+  topology.flat_axis = scene.grid.plane_strain.value_or(-1);
+  const double block = kBlockSide * scene.grid.spacing;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const PeriodicAxis& periodic = scene.grid.periodic[axis];
+    if (periodic.length <= 0.0) continue;
+    topology.period[axis] = static_cast<std::int32_t>(std::lround(periodic.length / block));
+    topology.period_start[axis] = static_cast<std::int32_t>(std::lround(periodic.lower / block)) +
+                                  static_cast<std::int32_t>(scene.grid.origin_cells[axis] / kBlockSide);
+  }
+  return topology;
+}
+
+int material_index(const Scene& scene, const std::string& name) {
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    if (scene.materials[k].name == name) return static_cast<int>(k);
+  }
+  return -1;
+}
+
+const MaterialDescription& material_of(const Scene& scene, int index) {
+  return scene.materials[static_cast<std::size_t>(index)];
+}
+
+template <class Real>
+MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const MaterialDescription& material) {
+  MaterialRuntime<Real> runtime{kernels.material[static_cast<int>(material.type)], nullptr};
+  switch (material.type) {
+    case MaterialType::kDruckerPrager:
+      runtime.constants = std::make_shared<DruckerPragerConstants<Real>>(material.drucker_prager);
+      break;
+    case MaterialType::kElastic:
+      runtime.constants = std::make_shared<HenckyConstants<Real>>(material.elastic.elasticity);
+      break;
+  }
+  return runtime;
+}
+
+bool pulls(const Gravity& gravity) { return gravity.acceleration.squaredNorm() > 0.0; }
+
+bool yields(const MaterialDescription& material) { return material.type == MaterialType::kDruckerPrager; }
+
+/// Fills a set with the seeds of a body: rest, but for the body's motion.
+template <class Real>
+void fill_set(const Scene& scene, const BodyDescription& body, const Vec3& center, const Seeds& seeds,
+              std::uint32_t first_id, ParticleSet<Real>& set, std::vector<Index3>& cells) {
+  set.name = body.name;
+  set.particle_volume = seeds.particle_volume;
+  set.particle_mass = seeds.particle_volume * material_of(scene, set.material).elasticity().density;
+  set.allocate(seeds.cell.size());
+  cells.resize(set.count);
+  const Vec3& w = body.angular_velocity;
+  const double spin[9] = {0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0};
+  for (std::size_t p = 0; p < set.count; ++p) {
+    Vec3 x;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cells[p][axis] = seeds.cell[p][axis] + static_cast<std::int32_t>(scene.grid.origin_cells[axis]);
+      set.position[axis][p] = static_cast<Real>(seeds.offset[p][axis]);
+      x[static_cast<int>(axis)] = (seeds.cell[p][axis] + seeds.offset[p][axis]) * scene.grid.spacing;
+    }
+    const Vec3 v = body.velocity + w.cross(x - center);
+    for (int axis = 0; axis < 3; ++axis) set.velocity[axis][p] = static_cast<Real>(v[axis]);
+    for (int k = 0; k < kAffineComponents; ++k) set.affine[k][p] = static_cast<Real>(spin[k]);
+    set.id[p] = first_id + static_cast<std::uint32_t>(p);
+  }
+}
+
+double physical_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// Refuses, before anything is allocated, a body that would not fit.
+Result<void> check_memory(const Scene& scene, double particles, double limit) {
+  const double bytes = particles * static_cast<double>(bytes_per_particle(scene) + 40);  // 40: seeds, while they last
+  if (bytes <= limit && particles < 4.0e9) return {};
+  const double allowed = std::min(limit / bytes, 4.0e9 / particles);
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "needs about %.1f GB for %.3g particles, and %.1f GB may be used; a spacing of %.3g m or more fits",
+                bytes * 1e-9, particles, limit * 1e-9, scene.grid.spacing / std::cbrt(allowed));
+  return Error{ErrorKind::kMemory, text, "grid.spacing"};
+}
+
+template <class Real>
+Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, State<Real>& state) {
+  std::vector<std::shared_ptr<const Shape>> shapes;
+  double particles = 0.0;
+  for (const BodyDescription& body : scene.bodies) {
+    auto shape = make_shape(body.shape, scene.folder, scene.grid.spacing, options.allow_outside_paths);
+    if (!shape) return Error{shape.error().kind, shape.error().text(), "bodies." + body.name + ".shape"};
+    const double cells = (*shape)->volume() / std::pow(scene.grid.spacing, 3);
+    if (!scene.grid.plane_strain) particles += cells * static_cast<double>(body.particles_per_cell);
+    shapes.push_back(*shape);
+  }
+  const double limit = options.memory_limit > 0.0 ? options.memory_limit : 0.85 * physical_memory();
+  if (std::isfinite(particles)) {  // seeding refuses the infinite ones
+    if (auto fits = check_memory(scene, particles, limit); !fits) return fits.error();
+  }
+  std::vector<std::vector<Index3>> cells;
+  std::uint32_t next_id = 0;
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const BodyDescription& body = scene.bodies[k];
+    SeedOptions seeding{scene.grid.spacing, body.particles_per_cell, body.sampling,
+                        static_cast<std::uint64_t>(body.seed), scene.grid.plane_strain};
+    auto seeds = seed_shape(*shapes[k], seeding);
+    if (!seeds) return Error{seeds.error().kind, seeds.error().text(), "bodies." + body.name};
+    const Bounds bounds = shapes[k]->bounds();
+    ParticleSet<Real> set;
+    set.material = material_index(scene, body.material);
+    if (scene.volume_correction.enabled && yields(material_of(scene, set.material))) {
+      set.extra.push_back({kVolumeGained, {}});
+    }
+    fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), *seeds, next_id, set, cells.emplace_back());
+    next_id += static_cast<std::uint32_t>(set.count);
+    state.sets.push_back(std::move(set));
+  }
+  place_in_blocks(state, cells, transfer_constants(scene).base_shift);
+  return {};
+}
+
+template <class Real>
+void set_initial_maxima(State<Real>& state) {
+  for (const auto& set : state.sets) {
+    for (std::size_t p = 0; p < set.count; ++p) {
+      double speed = 0.0, gradient = 0.0;
+      for (const auto& v : set.velocity) speed += double(v[p]) * double(v[p]);
+      for (const auto& c : set.affine) gradient += double(c[p]) * double(c[p]);
+      state.counters.max_speed = std::max(state.counters.max_speed, std::sqrt(speed));
+      state.counters.max_gradient = std::max(state.counters.max_gradient, std::sqrt(gradient));
+    }
+  }
+}
+
+StepLimits step_limits(const Scene& scene) {
+  const TimeDescription& time = scene.time;
+  return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, 0.0, {}};
+}
+
+template <class Real>
+StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, const State<Real>& state,
+                            const std::vector<Solid>& solids) {
+  StepPlan<Real> plan;
+  plan.kernels = &kernels<Real>(options.target);
+  plan.transfer = transfer_constants(scene);
+  plan.limits = step_limits(scene);
+  const Lattice<Real> lattice = make_lattice(state, plan.transfer);
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const auto& set : state.sets) {
+    const Elasticity& e = material_of(scene, set.material).elasticity();
+    plan.limits.sets.push_back({e.sound_speed(), std::sqrt((3.0 * e.lambda() + 2.0 * e.mu()) / e.density)});
+    lightest = std::min(lightest, set.particle_mass);
+  }
+  // A lighter node would lose no momentum that its neighbours' sums could still hold.
+  plan.least_mass = static_cast<Real>(1e-12 * lightest);
+
+  // Particles to nodes.
+  for (const auto& set : state.sets) {
+    const MaterialRuntime<Real> material = make_material(*plan.kernels, material_of(scene, set.material));
+    plan.scatter.push_back({stress_pass(material),             // tau of the strain
+                            scatter_pass(plan, lattice)});     // mass, momentum, and the impulse of tau
+  }
+
+  // Nodes.
+  plan.nodes.push_back(normalize_pass(plan));                  // v* = p/m
+  if (pulls(scene.gravity)) {
+    plan.nodes.push_back(gravity_pass(scene.gravity, plan));   // v* += dt g
+  }
+  if (!solids.empty()) {
+    const auto tables = make_contact_tables<Real>(solids);
+    plan.order.push_back(near_solids_pass(tables));            // distances and normals of nodes near solids
+    plan.nodes.push_back(collide_pass(tables));                // v* -> v-bar -> v-tilde
+  }
+
+  // Nodes to particles.
+  for (const auto& set : state.sets) {
+    const MaterialDescription& description = material_of(scene, set.material);
+    const MaterialRuntime<Real> material = make_material(*plan.kernels, description);
+    auto& passes = plan.gather.emplace_back();
+    passes.push_back(gather_pass(plan, lattice));              // v and C, of v-tilde where there is friction
+    passes.push_back(advance_pass(plan));                      // x += dt v-bar
+    passes.push_back(trial_pass(material));                    // strain of the step
+    const bool corrected = !set.extra.empty() && scene.volume_correction.enabled;
+    if (corrected) passes.push_back(open_volume_pass(plan, 0));
+    if (yields(description)) passes.push_back(project_pass(material));  // back to the yield surface
+    if (corrected) passes.push_back(close_volume_pass(plan, 0));
+  }
+  return plan;
+}
+
+}  // namespace
+
+Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_paths) {
+  std::vector<Solid> solids;
+  for (const Collider& collider : scene.colliders) {
+    auto shape = make_shape(collider.shape, scene.folder, scene.grid.spacing, allow_outside_paths);
+    if (!shape) return Error{shape.error().kind, shape.error().text(), "colliders." + collider.name + ".shape"};
+    solids.push_back({collider.name, *shape, collider.hollow, collider.contact, collider.friction});
+  }
+  return solids;
+}
+
+template <class Real>
+Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options) {
+  CompiledScene<Real> compiled;
+  State<Real>& state = compiled.state;
+  state.spacing = scene.grid.spacing;
+  state.topology = make_topology(scene);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    state.origin_cells[axis] = static_cast<std::int32_t>(scene.grid.origin_cells[axis]);
+  }
+  auto solids = build_solids(scene, options.allow_outside_paths);
+  if (!solids) return solids.error();
+  compiled.solids = std::move(*solids);
+  if (auto seeded = seed_bodies(scene, options, state); !seeded) return seeded.error();
+  set_initial_maxima(state);
+  compiled.plan = compile_plan(scene, options, state, compiled.solids);
+  if (auto valid = compiled.plan.validate(); !valid) return valid.error();
+  return compiled;
+}
+
+std::vector<EffectStatus> effect_status(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  const bool gravity = pulls(scene.gravity);
+  return {
+      {"gravity", gravity, gravity ? "gravity.acceleration is not zero" : "gravity.acceleration is zero", 0},
+      {"collider", !scene.colliders.empty(),
+       scene.colliders.empty() ? "no entry in 'colliders'" : std::to_string(scene.colliders.size()) + " in 'colliders'", 0},
+      {"volume_correction", scene.volume_correction.enabled,
+       scene.volume_correction.enabled ? "key 'volume_correction'" : "no key 'volume_correction'",
+       scene.volume_correction.enabled ? real : 0},
+  };
+}
+
+std::size_t bytes_per_particle(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  std::size_t bytes = real * (3 + 3 + kAffineComponents + kStrainComponents) + sizeof(std::uint32_t);
+  bytes += real + sizeof(std::uint32_t) * 3;  // ordering: one channel, one id, permutation and groups
+  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
+  return bytes;
+}
+
+template Result<CompiledScene<float>> compile_scene(const Scene&, const CompileOptions&);
+template Result<CompiledScene<double>> compile_scene(const Scene&, const CompileOptions&);
+
+}  // namespace repose

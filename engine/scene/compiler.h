@@ -1,0 +1,51 @@
+// Repose: from a scene to something that runs: the initial state, and the step as a list of passes. The body of
+// compile_plan is the step's table of contents: one commented line for each thing that a scene can call for, and
+// nothing else decides the order.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/effect/collider.h"
+#include "engine/scene/scene.h"
+#include "engine/state/state.h"
+#include "engine/step/step_plan.h"
+
+namespace repose {
+
+struct CompileOptions {
+  Target target = best_target();
+  bool allow_outside_paths = false;
+  double memory_limit = 0.0;  ///< bytes; 0: 85 % of the machine's memory
+};
+
+template <class Real>
+struct CompiledScene {
+  State<Real> state;
+  StepPlan<Real> plan;
+  std::vector<Solid> solids;
+};
+
+/// Builds shapes, seeds bodies, lists the passes. Errors: 65 geometry that is wrong or holds no particle, 66 a missing
+/// mesh, 78 a scene that will not fit in memory, with the spacing that would.
+template <class Real>
+Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options);
+
+/// The solids of a scene, for reports and pictures.
+Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_paths);
+
+/// An effect that scenes can call for, and whether this one does.
+struct EffectStatus {
+  std::string name;
+  bool on = false;
+  std::string reason;          ///< the key that asked for it, or what would
+  std::size_t bytes_per_particle = 0;
+};
+std::vector<EffectStatus> effect_status(const Scene& scene);
+
+/// Bytes per particle of all channels and of what ordering keeps beside them.
+std::size_t bytes_per_particle(const Scene& scene);
+
+}  // namespace repose

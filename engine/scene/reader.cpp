@@ -1,0 +1,100 @@
+// Repose: from a scene file to a Scene: text, tree, overrides, parameters, then the keys. Complaints of all
+// these are gathered; only a file that is not JSON at all ends it early.
+#include "engine/scene/reader.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "engine/scene/complaints.h"
+#include "engine/scene/json_fields.h"
+#include "engine/scene/json_text.h"
+#include "engine/scene/overrides.h"
+#include "engine/scene/parameters.h"
+#include "engine/scene/wording.h"
+
+namespace repose {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+
+Error too_large(const std::string& name) {
+  return {ErrorKind::kBadScene, "larger than 16 MB; put geometry into mesh files", name};
+}
+
+Result<std::string> read_text(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    const bool exists = std::filesystem::exists(path, ignored);
+    return Error{ErrorKind::kNoInput,
+                 exists ? "not a file; give a scene file" : "no such file; give a scene file", path};
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{ErrorKind::kNoInput, "cannot be opened; it must be readable", path};
+  // One byte more than allowed tells a file that is too large from one that just fits.
+  std::string text(kMostBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) return Error{ErrorKind::kNoInput, "cannot be read to its end", path};
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+/// A mesh path may not lead out of the scene's folder, so that a scene from elsewhere cannot read at will.
+/// Links are followed later, where the mesh is opened; here the path as written is judged, at its place.
+void check_mesh_path(const Json::Value& solid, const std::string& path, Complaints& complaints) {
+  if (!solid.isObject() || !solid["shape"].isObject() || !solid["shape"]["file"].isString()) return;
+  const Json::Value& file = solid["shape"]["file"];
+  const std::filesystem::path normal = std::filesystem::path(file.asString()).lexically_normal();
+  const bool leaves = normal.is_absolute() || (!normal.empty() && *normal.begin() == "..");
+  if (!leaves) return;
+  complaints.add(file.getOffsetStart(), path + ".shape.file",
+                 found_text(file) + " leads out of the scene's folder; name a file within it");
+}
+
+void check_mesh_paths(const Json::Value& root, Complaints& complaints) {
+  for (const char* key : {"bodies", "colliders"}) {
+    const Json::Value& list = root[key];
+    if (!list.isArray()) continue;
+    for (Json::ArrayIndex i = 0; i < list.size(); ++i) {
+      check_mesh_path(list[i], std::string(key) + "[" + std::to_string(i) + "]", complaints);
+    }
+  }
+}
+
+}  // namespace
+
+Result<Scene> read_scene_text(const std::string& text, const std::string& name, const std::string& folder,
+                              const ReadOptions& options) {
+  if (text.size() > kMostBytes) return too_large(name);
+  SourceText source(name, text);
+  Complaints complaints;
+  Json::Value root = parse_json(source, complaints);
+  if (!complaints.empty()) return complaints.error(source);
+  if (!root.isObject()) {
+    complaints.add(root.getOffsetStart(), "", "found " + found_text(root) + "; a scene is an object {...}");
+    return complaints.error(source);
+  }
+
+  Expressions expressions;
+  apply_overrides(options.overrides, root, source, complaints);
+  evaluate_parameters(root, expressions, complaints);
+  Scene scene;
+  Reading reading{source, expressions, complaints};
+  JsonFields fields(root, "", reading);
+  describe(fields, scene);
+  fields.finish();
+  if (!options.allow_outside_paths) check_mesh_paths(root, complaints);
+  if (!complaints.empty()) return complaints.error(source);
+
+  scene.folder = folder;
+  scene.canonical = compact_json(root);
+  return scene;
+}
+
+Result<Scene> read_scene(const std::string& path, const ReadOptions& options) {
+  const Result<std::string> text = read_text(path);
+  if (!text) return text.error();
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return read_scene_text(*text, path, folder.empty() ? "." : folder, options);
+}
+
+}  // namespace repose

@@ -1,0 +1,244 @@
+// Repose: the keys of a scene file, in the order of its reference. Conditions that one value can state are
+// ranges; those across several keys are checks at the key that a user would change.
+#include "engine/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/wording.h"
+
+namespace repose {
+namespace {
+
+constexpr Choice kUpAxes[] = {{"y", "y is up"}, {"z", "z is up"}};
+constexpr Choice kPrecisions[] = {{"single", "float, the fast one"}, {"double", "double, for reference"}};
+constexpr Choice kStencils[] = {{"quadratic", "quadratic B-spline, 27 nodes"}};
+constexpr Choice kTransfers[] = {{"apic", "affine particle-in-cell, Jiang et al. 2015"}};
+constexpr Choice kFlatAxes[] = {
+    {"none", "three dimensions"}, {"x", "nothing varies along x"}, {"y", "along y"}, {"z", "along z"}};
+constexpr Choice kSamplings[] = {
+    {"jittered", "each cell is cut into equal parts with one particle at random in each"},
+    {"poisson_disk", "no two particles closer than a radius, Bridson 2007"}};
+constexpr const char* kAxisNames[] = {"x", "y", "z"};
+
+constexpr double kBlockCells = 8.0;   // two blocks: what keeps block colours and a periodic seam in step
+constexpr double kMostCells = 2.0e9;  // cell coordinates are 32 bits wide
+
+bool is_multiple(double value, double unit) {
+  const double count = value / unit;
+  return std::abs(count - std::round(count)) <= 1e-6 * std::max(1.0, std::abs(count));
+}
+
+void describe_periodic_axis(Fields& fields, PeriodicAxis& axis, double spacing) {
+  const double unit = kBlockCells * spacing;
+  fields.number("lower", axis.lower, {.unit = "m", .meaning = "where the stretch begins"});
+  fields.number("length", axis.length,
+                {.unit = "m",
+                 .meaning = "length of the stretch; a multiple of 8 spacings",
+                 .low = 0.0,
+                 .low_open = true,
+                 .required = true});
+  const auto advice = [&](double value) {
+    return number_text(value) + " must be a multiple of 8 spacings, " + number_text(unit) + " m; nearest is " +
+           number_text(std::round(value / unit) * unit);
+  };
+  fields.check(is_multiple(axis.lower, unit), "lower", advice(axis.lower));
+  const bool long_enough = axis.length > 0.5 * unit;
+  fields.check(long_enough, "length", "must be at least 8 spacings, " + number_text(unit) + " m");
+  fields.check(!long_enough || is_multiple(axis.length, unit), "length", advice(axis.length));
+  const double reach = std::max(std::abs(axis.lower), std::abs(axis.lower + axis.length));
+  fields.check(reach < kMostCells * spacing, "length", "must end less than 2e9 spacings from the origin");
+}
+
+void describe_periodic(Fields& fields, GridDescription& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const char* name = kAxisNames[axis];
+    bool given = false;
+    fields.object(name, given, false, "space repeats along this axis",
+                  [&](Fields& f) { describe_periodic_axis(f, grid.periodic[axis], grid.spacing); });
+    fields.check(!given || grid.plane_strain != axis, name,
+                 "this axis is flat (plane_strain) and cannot repeat");
+  }
+}
+
+void describe_grid(Fields& fields, GridDescription& grid) {
+  fields.number(
+      "spacing", grid.spacing,
+      {.unit = "m", .meaning = "distance between nodes, dx", .low = 0.0, .low_open = true, .required = true});
+  fields.choice("precision", grid.precision, kPrecisions, "type of particle and node data");
+  fields.choice("stencil", grid.stencil, kStencils, "how a particle spreads over nodes");
+  fields.choice("transfer", grid.transfer, kTransfers, "how momentum moves between particles and nodes");
+  fields.integers("origin_cells", grid.origin_cells,
+                  {.unit = "cells",
+                   .meaning = "where the scene's origin lies in the lattice; multiples of 8",
+                   .low = -kMostCells,
+                   .high = kMostCells,
+                   .low_open = true,
+                   .high_open = true});
+  fields.check(
+      std::all_of(grid.origin_cells.begin(), grid.origin_cells.end(), [](auto n) { return n % 8 == 0; }),
+      "origin_cells", "must be multiples of 8, such as [0, -16, 800]");
+
+  int flat = grid.plane_strain ? *grid.plane_strain + 1 : 0;
+  fields.choice("plane_strain", flat, kFlatAxes, "the axis across which nothing varies");
+  grid.plane_strain = flat == 0 ? std::nullopt : std::optional<int>(flat - 1);
+
+  bool given = false;
+  fields.object("periodic", given, false, "axes along which space repeats",
+                [&](Fields& f) { describe_periodic(f, grid); });
+}
+
+void describe_time(Fields& fields, TimeDescription& time) {
+  fields.integer("frames", time.frames, {.meaning = "frames to simulate", .low = 1.0, .high = 1.0e9});
+  fields.number("frames_per_second", time.frames_per_second,
+                {.unit = "1/s", .meaning = "frames in a second of the scene", .low = 0.0, .low_open = true});
+  fields.number("max_step", time.max_step,
+                {.unit = "s",
+                 .meaning = "upper bound of the time step beside the limits below",
+                 .low = 0.0,
+                 .low_open = true});
+  const auto share = [&](const char* key, double& value, const char* meaning) {
+    fields.number(key, value, {.meaning = meaning, .low = 0.0, .high = 1.0, .low_open = true});
+  };
+  share("cfl", time.cfl, "cells that matter may cross in a step");
+  share("sound", time.sound, "cells that a compression wave may cross in a step");
+  share("isolated", time.isolated, "share of the stability limit of one particle alone");
+  share("strain", time.strain, "largest velocity gradient times step");
+}
+
+void describe_material(Fields& fields, MaterialDescription& material) {
+  const Alternative types[] = {
+      {"drucker_prager", "dry sand", [&](Fields& f) { material.drucker_prager.describe(f); }},
+      {"elastic", "an elastic solid of Hencky strain", [&](Fields& f) { material.elastic.describe(f); }},
+  };
+  int chosen = static_cast<int>(material.type);
+  fields.alternatives(chosen, types, "the law of the material");
+  material.type = static_cast<MaterialType>(chosen);
+}
+
+void describe_body(Fields& fields, BodyDescription& body) {
+  fields.text("name", body.name, "what messages and overrides call it; no two bodies share a name", true);
+  fields.text("material", body.material, "name of one of the materials", true);
+  bool present = false;
+  fields.object("shape", present, true, "the solid to fill", [&](Fields& f) { describe(f, body.shape); });
+  fields.integer("particles_per_cell", body.particles_per_cell,
+                 {.meaning = "particles in a full cell", .low = 1.0, .high = 512.0});
+  fields.choice("sampling", body.sampling, kSamplings, "how particles are placed");
+  fields.integer("seed", body.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
+  fields.vector("velocity", body.velocity, {.unit = "m/s", .meaning = "at the start"});
+  fields.vector("angular_velocity", body.angular_velocity,
+                {.unit = "rad/s", .meaning = "at the start, about the centre of the shape's bounds"});
+}
+
+void describe_output(Fields& fields, OutputDescription& output) {
+  fields.flag("vdb", output.vdb, "points as NAME.points.####.vdb");
+  fields.flag("ply", output.ply, "points as PLY");
+  fields.flag("vtp", output.vtp, "points as VTK polygonal data");
+  fields.flag("checkpoint", output.checkpoint, "a state to resume from per frame, the last two kept");
+}
+
+void describe_camera(Fields& fields, CameraDescription& camera) {
+  fields.vector("eye", camera.eye, {.unit = "m", .meaning = "where the camera is"});
+  fields.vector("target", camera.target, {.unit = "m", .meaning = "what it looks at"});
+  fields.number("field_of_view", camera.field_of_view,
+                {.unit = "degrees",
+                 .meaning = "vertical angle of view",
+                 .low = 0.0,
+                 .high = 180.0,
+                 .low_open = true,
+                 .high_open = true});
+  fields.check((camera.eye - camera.target).norm() > 0.0, "target", "must differ from \"eye\"");
+}
+
+/// Names become names of files: letters, digits, "_", "-" and ".", the first a letter or digit.
+bool is_file_name(const std::string& name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  const auto allowed = [&](char c) { return plain(c) || c == '_' || c == '-' || c == '.'; };
+  return !name.empty() && plain(name[0]) && std::all_of(name.begin(), name.end(), allowed);
+}
+
+template <class Named>
+bool is_named(const std::vector<Named>& list, const std::string& name) {
+  return std::any_of(list.begin(), list.end(), [&](const Named& entry) { return entry.name == name; });
+}
+
+void describe_materials(Fields& fields, Scene& scene) {
+  fields.dictionary("materials", true, "the materials, by name", [&](const std::string& name, Fields& f) {
+    MaterialDescription material;
+    material.name = name;
+    describe_material(f, material);
+    scene.materials.push_back(material);
+  });
+}
+
+void describe_bodies(Fields& fields, Scene& scene) {
+  fields.list("bodies", true, "solids filled with particles", [&](Fields& f) {
+    BodyDescription body;
+    describe_body(f, body);
+    f.check(!is_named(scene.bodies, body.name), "name",
+            "\"" + body.name + "\" is taken by another body; choose another");
+    std::vector<std::string> materials;
+    for (const MaterialDescription& material : scene.materials) materials.push_back(material.name);
+    f.check(materials.empty() || is_named(scene.materials, body.material), "material",
+            "no material \"" + body.material + "\"; " + did_you_mean(body.material, materials));
+    scene.bodies.push_back(body);
+  });
+}
+
+void describe_colliders(Fields& fields, Scene& scene) {
+  fields.list("colliders", false, "solids that material runs into", [&](Fields& f) {
+    Collider collider;
+    describe(f, collider);
+    f.check(!is_named(scene.colliders, collider.name), "name",
+            "\"" + collider.name + "\" is taken by another collider; choose another");
+    scene.colliders.push_back(collider);
+  });
+}
+
+void describe_gravity(Fields& fields, Scene& scene) {
+  // Down follows `up` unless the scene, or a host that filled it, says otherwise.
+  const bool as_declared = scene.gravity.acceleration == Gravity{}.acceleration;
+  if (scene.up == UpAxis::kZ && as_declared) scene.gravity.acceleration = Vec3(0.0, 0.0, -9.81);
+  bool given = false;
+  fields.object("gravity", given, false, "a uniform acceleration; it acts also where the key is left out",
+                [&](Fields& f) { describe(f, scene.gravity); });
+}
+
+}  // namespace
+
+void describe(Fields& fields, Scene& scene) {
+  std::int64_t format = 1;
+  fields.integer("repose", format,
+                 {.meaning = "version of the scene format", .low = 1.0, .high = 1.0, .required = true});
+  std::string schema;
+  fields.text("$schema", schema,
+              "where editors find the JSON Schema of scenes; the reader does not look at it");
+  fields.text("name", scene.name, "of the scene and of the files that a run writes", true);
+  fields.check(
+      is_file_name(scene.name), "name",
+      "must do as the name of a file: letters, digits, \"_\", \"-\" and \".\", the first a letter or digit");
+  fields.choice("up", scene.up, kUpAxes, "the axis that points up; gravity follows it");
+  fields.parameters("parameters",
+                    "named numbers for expressions; they may use each other, pi and deg (pi / 180)");
+
+  bool given = false;
+  fields.object("grid", given, true, "the lattice", [&](Fields& f) { describe_grid(f, scene.grid); });
+  fields.object("time", given, false, "frames and time steps",
+                [&](Fields& f) { describe_time(f, scene.time); });
+  describe_materials(fields, scene);
+  describe_bodies(fields, scene);
+  describe_colliders(fields, scene);
+  describe_gravity(fields, scene);
+  VolumeCorrection& correction = scene.volume_correction;
+  fields.object("volume_correction", correction.enabled, false,
+                "sand that opened in tension closes before it carries load again, Tampubolon et al. 2017",
+                [&](Fields& f) { describe(f, correction); });
+  fields.object("output", given, false, "what is written per frame",
+                [&](Fields& f) { describe_output(f, scene.output); });
+  fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",
+                [&](Fields& f) { describe_camera(f, scene.camera); });
+}
+
+}  // namespace repose

@@ -1,0 +1,111 @@
+// Repose: a scene as plain data: what to simulate, never how. The reader fills it from a file, a host can
+// fill it by hand, the compiler turns it into a step plan. SI units, angles in degrees.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/params.h"
+#include "engine/base/result.h"
+#include "engine/effect/collider.h"
+#include "engine/effect/gravity.h"
+#include "engine/effect/volume_correction.h"
+#include "engine/geometry/seeding.h"
+#include "engine/geometry/shape.h"
+#include "kernels/material/drucker_prager.h"
+#include "kernels/material/hencky.h"
+
+namespace repose {
+
+enum class UpAxis { kY, kZ };
+enum class Precision { kSingle, kDouble };
+enum class StencilKind { kQuadratic };
+enum class TransferKind { kApic };
+enum class MaterialType { kDruckerPrager, kElastic };
+
+/// A stretch of one axis after which space repeats, a multiple of 8 cells long.
+struct PeriodicAxis {
+  double lower = 0.0;   // m
+  double length = 0.0;  // m; 0: not periodic
+};
+
+struct GridDescription {
+  double spacing = 0.01;               ///< dx, m
+  Precision precision = Precision::kSingle;
+  StencilKind stencil = StencilKind::kQuadratic;
+  TransferKind transfer = TransferKind::kApic;
+  std::array<std::int64_t, 3> origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice; multiples of 8
+  std::optional<int> plane_strain;     ///< the axis (0, 1, 2) across which nothing varies
+  std::array<PeriodicAxis, 3> periodic;
+};
+
+struct TimeDescription {
+  std::int64_t frames = 48;
+  double frames_per_second = 24.0;
+  double max_step = 1.0;               ///< s; an upper bound beside the limits below
+  double cfl = 0.6;                    ///< cells that matter may cross in a step
+  double sound = 0.5;                  ///< cells that a compression wave may cross in a step
+  double isolated = 0.9;               ///< share of the stability limit of one particle alone
+  double strain = 0.5;                 ///< largest velocity gradient times step
+};
+
+struct MaterialDescription {
+  std::string name;
+  MaterialType type = MaterialType::kDruckerPrager;
+  DruckerPragerParameters drucker_prager;
+  HenckyParameters elastic;
+
+  const Elasticity& elasticity() const {
+    return type == MaterialType::kDruckerPrager ? drucker_prager.elasticity : elastic.elasticity;
+  }
+};
+
+/// A solid filled with particles of one material.
+struct BodyDescription {
+  std::string name;
+  std::string material;
+  ShapeDescription shape;
+  std::int64_t particles_per_cell = 8;
+  Sampling sampling = Sampling::kJittered;
+  std::int64_t seed = 1;
+  Vec3 velocity{0, 0, 0};          ///< m/s
+  Vec3 angular_velocity{0, 0, 0};  ///< rad/s about the centre of the shape's bounds
+};
+
+struct OutputDescription {
+  bool vdb = true;   ///< NAME.points.####.vdb
+  bool ply = false;
+  bool vtp = false;
+  bool checkpoint = true;  ///< a resumable state per frame, two kept
+};
+
+/// How `movie` looks at the run.
+struct CameraDescription {
+  bool given = false;  ///< otherwise it frames the material
+  Vec3 eye{1, 1, 1};
+  Vec3 target{0, 0, 0};
+  double field_of_view = 35.0;  ///< degrees, vertical
+};
+
+struct Scene {
+  std::string name;
+  UpAxis up = UpAxis::kY;
+  GridDescription grid;
+  TimeDescription time;
+  std::vector<MaterialDescription> materials;
+  std::vector<BodyDescription> bodies;
+  std::vector<Collider> colliders;
+  Gravity gravity;
+  VolumeCorrection volume_correction;
+  OutputDescription output;
+  CameraDescription camera;
+
+  std::string folder;     ///< where relative paths start
+  std::string canonical;  ///< the scene as compact JSON after overrides and expressions; what is hashed and kept beside a run
+};
+
+void describe(Fields& fields, Scene& scene);
+
+}  // namespace repose

@@ -1,0 +1,46 @@
+// Repose: the text of a scene, and where in it a value stands. A place is an offset in bytes; the overrides
+// of the command line are laid end to end behind the file, so that one number names a place in either.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace repose {
+
+class SourceText {
+ public:
+  /// `name` is what places are prefixed with. A UTF-8 byte order mark at the start is dropped.
+  SourceText(std::string name, std::string text);
+
+  const std::string& text() const { return text_; }
+
+  /// Registers an override and gives the offset that stands for its value.
+  std::ptrdiff_t add_override(const std::string& argument);
+
+  /// "file:line:col", both from 1, columns in characters; "--set a.b=v" for the offset of an override.
+  std::string place(std::ptrdiff_t offset) const;
+
+  /// Offset of the key of the value that starts at `value`; `value` itself where it has no key in the file.
+  std::ptrdiff_t key_of(std::ptrdiff_t value) const;
+
+  /// Offset of a line and a column in bytes, both from 1, as the JSON library counts them.
+  std::ptrdiff_t offset_of(std::ptrdiff_t line, std::ptrdiff_t column) const;
+
+  /// Where braces and brackets first nest deeper than `limit`.
+  std::optional<std::ptrdiff_t> deeper_than(int limit) const;
+
+ private:
+  void find_lines();
+  void find_keys();
+
+  std::string name_;
+  std::string text_;
+  std::vector<std::ptrdiff_t> line_starts_;
+  std::map<std::ptrdiff_t, std::ptrdiff_t> key_of_value_;
+  std::vector<std::string> overrides_;
+};
+
+}  // namespace repose

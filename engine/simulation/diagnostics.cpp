@@ -1,0 +1,116 @@
+#include "engine/simulation/diagnostics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace repose {
+namespace {
+
+const Elasticity& elasticity_of(const Scene& scene, int material) {
+  return scene.materials[static_cast<std::size_t>(material)].elasticity();
+}
+
+/// Adds one particle to the sums of its block.
+template <class Real>
+void add_particle(const ParticleSet<Real>& set, std::size_t p, const Elasticity& elasticity, const Vec3& x,
+                  double affine_inertia, Diagnostics& sums) {
+  const double mass = set.particle_mass;
+  Vec3 v;
+  Mat3 c;
+  for (int axis = 0; axis < 3; ++axis) v[axis] = set.velocity[axis][p];
+  for (int k = 0; k < kAffineComponents; ++k) c(k / 3, k % 3) = set.affine[k][p];
+  double eps[kStrainComponents];
+  for (int k = 0; k < kStrainComponents; ++k) eps[k] = set.strain[k][p];
+  const double trace = eps[0] + eps[3] + eps[5];
+  const double square = eps[0] * eps[0] + eps[3] * eps[3] + eps[5] * eps[5] +
+                        2.0 * (eps[1] * eps[1] + eps[2] * eps[2] + eps[4] * eps[4]);
+  ++sums.particles;
+  sums.mass += mass;
+  sums.volume += set.particle_volume * std::exp(trace);
+  sums.kinetic_energy += 0.5 * mass * v.squaredNorm();
+  sums.affine_energy += 0.5 * mass * affine_inertia * c.squaredNorm();
+  sums.elastic_energy +=
+      set.particle_volume * (elasticity.mu() * square + 0.5 * elasticity.lambda() * trace * trace);
+  sums.momentum += mass * v;
+  // B = C D; its axial part is the angular momentum that the particle carries within (Jiang et al. 2015).
+  const Vec3 axial(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
+  sums.angular_momentum += mass * (x.cross(v) + affine_inertia * axial);
+  sums.center_of_mass += mass * x;
+  sums.lower = sums.lower.cwiseMin(x);
+  sums.upper = sums.upper.cwiseMax(x);
+  sums.max_speed = std::max(sums.max_speed, v.norm());
+}
+
+void note_depth(const std::vector<Solid>& solids, const Vec3& x, std::uint32_t id, Diagnostics& sums) {
+  for (const Solid& solid : solids) {
+    const double depth = -solid.distance(x);
+    if (depth <= sums.deepest) continue;
+    sums.deepest = depth;
+    sums.deepest_solid = solid.name;
+    sums.deepest_id = id;
+  }
+}
+
+void merge(const Diagnostics& block, Diagnostics& sums) {
+  if (block.particles == 0) return;
+  sums.particles += block.particles;
+  sums.mass += block.mass;
+  sums.volume += block.volume;
+  sums.kinetic_energy += block.kinetic_energy;
+  sums.affine_energy += block.affine_energy;
+  sums.elastic_energy += block.elastic_energy;
+  sums.momentum += block.momentum;
+  sums.angular_momentum += block.angular_momentum;
+  sums.center_of_mass += block.center_of_mass;
+  sums.lower = sums.lower.cwiseMin(block.lower);
+  sums.upper = sums.upper.cwiseMax(block.upper);
+  sums.max_speed = std::max(sums.max_speed, block.max_speed);
+  if (block.deepest > sums.deepest) {
+    sums.deepest = block.deepest;
+    sums.deepest_solid = block.deepest_solid;
+    sums.deepest_id = block.deepest_id;
+  }
+}
+
+Diagnostics empty_sums() {
+  Diagnostics sums;
+  sums.lower = Bounds().lower;
+  sums.upper = Bounds().upper;
+  return sums;
+}
+
+}  // namespace
+
+template <class Real>
+Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state, Threads& threads) {
+  const auto owners = state.grid.owners();
+  std::vector<Diagnostics> blocks(owners.size(), empty_sums());
+  // D of the quadratic stencil, dx^2/4: the second moment of a particle about its own position.
+  const double affine_inertia = 0.25 * state.spacing * state.spacing;
+  const double block_radius = 0.5 * std::sqrt(3.0) * (kHighestBase - kLowestBase + 2) * state.spacing;
+  threads.for_each(owners.size(), [&](std::size_t owner) {
+    const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+    const Vec3 center = state.world(block, {2.0, 2.0, 2.0});
+    const bool near = std::any_of(solids.begin(), solids.end(),
+                                  [&](const Solid& solid) { return solid.distance(center) < block_radius; });
+    for (const auto& set : state.sets) {
+      const Elasticity& elasticity = elasticity_of(scene, set.material);
+      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+        const Vec3 x = state.world(block, {double(set.position[0][p]), double(set.position[1][p]),
+                                           double(set.position[2][p])});
+        add_particle(set, p, elasticity, x, affine_inertia, blocks[owner]);
+        if (near) note_depth(solids, x, set.id[p], blocks[owner]);
+      }
+    }
+  });
+  Diagnostics sums = empty_sums();
+  for (const Diagnostics& block : blocks) merge(block, sums);
+  if (sums.mass > 0.0) sums.center_of_mass /= sums.mass;
+  sums.potential_energy = -sums.mass * scene.gravity.acceleration.dot(sums.center_of_mass);
+  return sums;
+}
+
+template Diagnostics diagnose(const Scene&, const std::vector<Solid>&, const State<float>&, Threads&);
+template Diagnostics diagnose(const Scene&, const std::vector<Solid>&, const State<double>&, Threads&);
+
+}  // namespace repose

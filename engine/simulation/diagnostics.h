@@ -1,0 +1,45 @@
+// Repose: figures of a state: energies, momenta, ledger, and how deep the deepest particle is in a solid. Sums run per
+// block in double and then over blocks in their order, so they do not depend on threads.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/parallel.h"
+#include "engine/effect/collider.h"
+#include "engine/scene/scene.h"
+#include "engine/state/state.h"
+
+namespace repose {
+
+struct Diagnostics {
+  std::uint64_t particles = 0;
+  double mass = 0.0;                    ///< kg
+  double volume = 0.0;                  ///< sum of V0 exp(tr eps): the volume as the elastic strain leaves it, m^3
+  double kinetic_energy = 0.0;          ///< of particle velocities, J
+  double affine_energy = 0.0;           ///< of the velocity gradients that APIC carries, J
+  double elastic_energy = 0.0;          ///< J
+  double potential_energy = 0.0;        ///< -m g . x with the scene's full gravity, J
+  Vec3 momentum{0, 0, 0};               ///< kg m/s
+  Vec3 angular_momentum{0, 0, 0};       ///< about the scene's origin, with the affine part, kg m^2/s
+  Vec3 center_of_mass{0, 0, 0};         ///< m
+  Vec3 lower{0, 0, 0}, upper{0, 0, 0};  ///< bounds of the particles, m
+  double max_speed = 0.0;               ///< m/s
+  double deepest = 0.0;                 ///< largest depth of a particle inside a solid, m; 0 if none is inside
+  std::string deepest_solid;            ///< which solid
+  std::uint32_t deepest_id = 0;         ///< which particle
+};
+
+struct MemoryUse {
+  std::size_t particle_bytes = 0;  ///< channels
+  std::size_t order_bytes = 0;     ///< scratch and ordering
+  std::size_t grid_bytes = 0;      ///< tree, tables and node fields
+  std::size_t blocks = 0;
+  std::uint64_t active_nodes = 0;
+};
+
+template <class Real>
+Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state, Threads& threads);
+
+}  // namespace repose

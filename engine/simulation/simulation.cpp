@@ -1,0 +1,217 @@
+#include "engine/simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <thread>
+
+#include "engine/io/checkpoint.h"
+#include "engine/state/state_hash.h"
+
+namespace repose {
+namespace {
+
+/// FNV-1a, for naming scenes; not a checksum.
+std::uint64_t fnv1a(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+std::string describe_offender(const Offender& offender, const StepReport& report) {
+  char text[512];
+  std::snprintf(text, sizeof text,
+                "physics gave out: particle %u of '%s' at (%.4g, %.4g, %.4g) m %s, even in a step of %.3g s "
+                "(velocity %.3g m/s, trial %.3g m/s, det(I + dt grad v) = %.3g); smaller time.sound or a finer "
+                "grid.spacing may help",
+                offender.id, offender.set.c_str(), offender.position[0], offender.position[1], offender.position[2],
+                offender.reason.c_str(), 2.0 * report.dt, offender.velocity.norm(), offender.trial_velocity.norm(),
+                offender.determinant);
+  return text;
+}
+
+template <class Real>
+class SimulationOf final : public Simulation {
+ public:
+  SimulationOf(const Scene& scene, const SimulationOptions& options, CompiledScene<Real> compiled, int threads)
+      : scene_(scene),
+        target_(options.target),
+        solids_(std::move(compiled.solids)),
+        state_(std::move(compiled.state)),
+        stepper_(std::move(compiled.plan), threads) {
+    stepper_.order_if_due(state_);
+  }
+
+  Result<StepReport> step() override {
+    const StepReport report = stepper_.step(state_, std::numeric_limits<double>::infinity());
+    offender_ = report.offender;
+    if (!report.accepted) return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+    state_.counters.time += report.dt;
+    return report;
+  }
+
+  Result<FrameReport> advance_frame(const StepCallback& callback) override;
+
+  const Counters& counters() const override { return state_.counters; }
+  std::size_t particles() const override { return state_.particles(); }
+  PointCloud points(bool channels) const override;
+  Diagnostics diagnose() override { return repose::diagnose(scene_, solids_, state_, stepper_.threads()); }
+  std::uint64_t hash() const override { return state_hash(state_); }
+  MemoryUse memory() const override {
+    return {state_.particle_bytes(), stepper_.bytes(), state_.grid_bytes(), state_.grid.size(),
+            state_.grid.active_nodes()};
+  }
+  const Profile& profile() const override { return stepper_.profile(); }
+  void reset_profile() override { stepper_.reset_profile(); }
+  const std::optional<Offender>& offender() const override { return offender_; }
+  std::vector<std::pair<std::string, PassDescription>> passes() const override;
+  Target target() const override { return target_; }
+  int threads() const override { return const_cast<Stepper<Real>&>(stepper_).threads().count(); }
+  const std::vector<Solid>& solids() const override { return solids_; }
+
+  Result<void> save(const std::string& path) const override {
+    return save_checkpoint(state_, scene_hash(scene_), path);
+  }
+  Result<void> load(const std::string& path) override {
+    if (auto loaded = load_checkpoint(path, scene_hash(scene_), state_); !loaded) return loaded;
+    for (const auto& pass : stepper_.plan().order) pass.run(state_);
+    return {};
+  }
+
+ private:
+  Scene scene_;
+  Target target_;
+  std::vector<Solid> solids_;
+  State<Real> state_;
+  Stepper<Real> stepper_;
+  std::optional<Offender> offender_;
+};
+
+template <class Real>
+Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callback) {
+  const double fps = scene_.time.frames_per_second;
+  Counters& counters = state_.counters;
+  FrameReport frame;
+  frame.least_dt = std::numeric_limits<double>::infinity();
+  const Profile before = stepper_.profile();
+  const auto start = std::chrono::steady_clock::now();
+  const double length = 1.0 / fps;
+  while (counters.time_in_frame < length) {
+    const double remaining = length - counters.time_in_frame;
+    const StepReport report = stepper_.step(state_, remaining);
+    frame.redone += report.redone;
+    offender_ = report.offender;
+    if (!report.accepted) return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+    // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
+    const bool last = report.dt >= remaining * (1.0 - 1e-9);
+    counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;
+    counters.time = static_cast<double>(counters.frame) / fps + counters.time_in_frame;
+    ++frame.steps;
+    ++frame.limits[static_cast<std::size_t>(report.limit)];
+    frame.least_dt = std::min(frame.least_dt, report.dt);
+    frame.largest_dt = std::max(frame.largest_dt, report.dt);
+    if (callback && !callback(report, counters)) break;
+  }
+  if (counters.time_in_frame >= length) {
+    counters.time_in_frame = 0.0;
+    ++counters.frame;
+    counters.time = static_cast<double>(counters.frame) / fps;
+  }
+  frame.frame = counters.frame;
+  frame.time = counters.time;
+  frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (std::size_t k = 0; k < frame.profile.seconds.size(); ++k) {
+    frame.profile.seconds[k] = stepper_.profile().seconds[k] - before.seconds[k];
+  }
+  return frame;
+}
+
+template <class Real>
+PointCloud SimulationOf<Real>::points(bool channels) const {
+  PointCloud cloud;
+  const std::size_t count = state_.particles();
+  cloud.spacing = state_.spacing;
+  cloud.position.resize(count);
+  cloud.velocity.resize(count);
+  cloud.id.resize(count);
+  cloud.radius.resize(count);
+  PointAttribute material{"material", 1, std::vector<float>(count)};
+  PointAttribute gained{kVolumeGained, 1, std::vector<float>(count)};
+  bool corrected = false;
+  const auto owners = state_.grid.owners();
+  for (const auto& set : state_.sets) {
+    // A sphere of half the particle's volume: grains that touch without hiding one another.
+    const double radius = std::cbrt(3.0 / (4.0 * std::numbers::pi) * 0.5 * set.particle_volume);
+    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
+      const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+        const std::size_t at = set.id[p];  // ids count from 0 without gaps
+        const Vec3 x = state_.world(block, {double(set.position[0][p]), double(set.position[1][p]),
+                                            double(set.position[2][p])});
+        cloud.position[at] = {x[0], x[1], x[2]};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          cloud.velocity[at][axis] = static_cast<float>(set.velocity[axis][p]);
+        }
+        cloud.id[at] = set.id[p];
+        cloud.radius[at] = static_cast<float>(radius);
+        material.values[at] = static_cast<float>(set.material);
+        if (!set.extra.empty()) {
+          gained.values[at] = static_cast<float>(set.extra[0].values[p]);
+          corrected = true;
+        }
+      }
+    }
+  }
+  if (scene_.materials.size() > 1) cloud.attributes.push_back(std::move(material));
+  if (channels && corrected) cloud.attributes.push_back(std::move(gained));
+  return cloud;
+}
+
+template <class Real>
+std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes() const {
+  std::vector<std::pair<std::string, PassDescription>> list;
+  const StepPlan<Real>& plan = stepper_.plan();
+  const auto add = [&list](const std::string& phase, const auto& passes) {
+    for (const auto& pass : passes) list.emplace_back(phase, pass.description);
+  };
+  add("order", plan.order);
+  for (std::size_t k = 0; k < plan.scatter.size(); ++k) add("scatter " + state_.sets[k].name, plan.scatter[k]);
+  add("nodes", plan.nodes);
+  for (std::size_t k = 0; k < plan.gather.size(); ++k) add("gather " + state_.sets[k].name, plan.gather[k]);
+  return list;
+}
+
+template <class Real>
+Result<std::unique_ptr<Simulation>> create_of(const Scene& scene, const SimulationOptions& options) {
+  auto compiled = compile_scene<Real>(scene, {options.target, options.allow_outside_paths, options.memory_limit});
+  if (!compiled) return compiled.error();
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  return std::unique_ptr<Simulation>(
+      std::make_unique<SimulationOf<Real>>(scene, options, std::move(*compiled), std::max(1, threads)));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Simulation>> Simulation::create(const Scene& scene, const SimulationOptions& options) {
+  const CleanFloatingPoint clean;
+  if (!target_supported(options.target)) {
+    return Error{ErrorKind::kUsage, std::string("this machine cannot run ") + target_name(options.target), "target"};
+  }
+  try {
+    if (scene.grid.precision == Precision::kDouble) return create_of<double>(scene, options);
+    return create_of<float>(scene, options);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorKind::kMemory, "memory ran out while the scene was set up; a coarser grid.spacing needs less",
+                 scene.name};
+  }
+}
+
+std::string scene_hash(const Scene& scene) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(scene.canonical)));
+  return text;
+}
+
+}  // namespace repose

@@ -1,0 +1,81 @@
+// Repose: a simulation as a host sees it: made from a scene, advanced by steps or frames, asked for points and
+// figures. It owns its threads and touches nothing of the process: no signal, no exit, no global.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/profile.h"
+#include "engine/base/result.h"
+#include "engine/effect/collider.h"
+#include "engine/io/point_cloud.h"
+#include "engine/scene/compiler.h"
+#include "engine/scene/scene.h"
+#include "engine/simulation/diagnostics.h"
+#include "engine/step/stepper.h"
+
+namespace repose {
+
+struct SimulationOptions {
+  int threads = 0;  ///< 0: as many as the machine has
+  Target target = best_target();
+  bool allow_outside_paths = false;
+  double memory_limit = 0.0;  ///< bytes; 0: 85 % of the machine's memory
+};
+
+/// What a frame took.
+struct FrameReport {
+  std::int64_t frame = 0;  ///< the frame that is now complete
+  double time = 0.0;       ///< s
+  std::int64_t steps = 0;
+  double least_dt = 0.0, largest_dt = 0.0;  ///< s
+  std::array<std::int64_t, 6> limits{};     ///< steps bound by each Limit
+  std::int64_t redone = 0;                  ///< halvings
+  double seconds = 0.0;                     ///< wall time
+  Profile profile;                          ///< wall time per phase
+};
+
+/// Called after each step; false stops the frame at once, with the state as it is.
+using StepCallback = std::function<bool(const StepReport&, const Counters&)>;
+
+class Simulation {
+ public:
+  /// Errors: 65 bad geometry, 66 a missing mesh, 78 not enough memory.
+  static Result<std::unique_ptr<Simulation>> create(const Scene& scene, const SimulationOptions& options = {});
+  virtual ~Simulation() = default;
+
+  /// One step of what the limits allow, ending on no frame. Error 70 as advance_frame.
+  virtual Result<StepReport> step() = 0;
+
+  /// Steps to the end of the next frame. Error 70 when the physics gives out: the message names the particle and what
+  /// would happen to it; offender() tells more. The state is then that of the last accepted step.
+  virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
+
+  virtual const Counters& counters() const = 0;
+  virtual std::size_t particles() const = 0;
+  /// Positions, velocities, ids and radii of all particles, in id order; `channels` adds what effects keep.
+  virtual PointCloud points(bool channels = false) const = 0;
+  virtual Diagnostics diagnose() = 0;
+  virtual std::uint64_t hash() const = 0;
+  virtual MemoryUse memory() const = 0;
+  virtual const Profile& profile() const = 0;
+  virtual void reset_profile() = 0;
+  virtual const std::optional<Offender>& offender() const = 0;
+  /// The passes of a step, in order, each with the phase it runs in.
+  virtual std::vector<std::pair<std::string, PassDescription>> passes() const = 0;
+  virtual Target target() const = 0;
+  virtual int threads() const = 0;
+  virtual const std::vector<Solid>& solids() const = 0;
+
+  /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74.
+  virtual Result<void> save(const std::string& path) const = 0;
+  virtual Result<void> load(const std::string& path) = 0;
+};
+
+/// The hash of a scene's canonical text, 16 hexadecimal digits.
+std::string scene_hash(const Scene& scene);
+
+}  // namespace repose

@@ -1,0 +1,38 @@
+// Repose: four numbers per node, for all blocks of the grid or for some of them. Blocks lie one after the other in
+// leaf order; a sparse field keeps a table from block to slot, so that what only a few blocks need costs the
+// others four bytes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/aligned_array.h"
+#include "kernels/layout/node_block.h"
+
+namespace repose {
+
+template <class Real>
+struct NodeField {
+  AlignedArray<Real> values;
+
+  void resize(std::size_t blocks) { values.reserve_uninitialized(blocks * kBlockValues); }
+  Real* block(std::size_t index) { return values.data() + index * kBlockValues; }
+  const Real* block(std::size_t index) const { return values.data() + index * kBlockValues; }
+  std::size_t bytes() const { return values.bytes(); }
+};
+
+template <class Real>
+struct SparseNodeField {
+  std::vector<std::int32_t> slot;  ///< per block; -1 where the field is absent
+  std::vector<std::uint8_t> live;  ///< per slot: whether this step wrote it
+  NodeField<Real> field;
+
+  bool has(std::size_t block) const {
+    return !slot.empty() && slot[block] >= 0 && live[static_cast<std::size_t>(slot[block])] != 0;
+  }
+  Real* block(std::size_t index) { return field.block(static_cast<std::size_t>(slot[index])); }
+  const Real* block(std::size_t index) const { return field.block(static_cast<std::size_t>(slot[index])); }
+  std::size_t bytes() const { return field.bytes() + slot.capacity() * sizeof(std::int32_t); }
+};
+
+}  // namespace repose

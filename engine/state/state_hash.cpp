@@ -1,0 +1,50 @@
+#include "engine/state/state_hash.h"
+
+#include <bit>
+
+namespace repose {
+namespace {
+
+/// Finalizer of splitmix64 (Steele et al. 2014).
+std::uint64_t mix(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+  return x ^ (x >> 31);
+}
+
+void absorb(std::uint64_t& hash, std::uint64_t value) { hash = mix(hash + 0x9e3779b97f4a7c15ull + value); }
+
+template <class Real>
+std::uint64_t bits(Real value) {
+  if constexpr (sizeof(Real) == 4) return std::bit_cast<std::uint32_t>(value);
+  if constexpr (sizeof(Real) == 8) return std::bit_cast<std::uint64_t>(value);
+}
+
+}  // namespace
+
+template <class Real>
+std::uint64_t state_hash(const State<Real>& state) {
+  // A sum over particles of a hash of each: ids are part of it, so the order of storage is not.
+  std::uint64_t sum = mix(static_cast<std::uint64_t>(state.counters.step));
+  const auto owners = state.grid.owners();
+  for (const auto& set : state.sets) {
+    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
+      const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+        std::uint64_t hash = set.id[p];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const std::int64_t cell = std::int64_t{block[axis]} * kBlockSide - state.origin_cells[axis];
+          absorb(hash, static_cast<std::uint64_t>(cell));
+        }
+        set.for_each_real([&](const AlignedArray<Real>& channel) { absorb(hash, bits(channel[p])); });
+        sum += mix(hash);
+      }
+    }
+  }
+  return sum;
+}
+
+template std::uint64_t state_hash(const State<float>&);
+template std::uint64_t state_hash(const State<double>&);
+
+}  // namespace repose

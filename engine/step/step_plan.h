@@ -1,0 +1,116 @@
+// Repose: the step as data. The scene compiler lists the passes that a scene calls for; the plan checks that each
+// reads only what an earlier one, or the initial state, provides; `repose plan` prints it. Passes of one list run
+// one after the other over a span of a block's particles, or over a block's nodes, while they are in cache.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/state/state.h"
+#include "kernels/pass/pass.h"
+
+namespace repose {
+
+/// What passes hand to one another within a chunk of particles; one per thread.
+template <class Real>
+struct Scratch {
+  AlignedArray<Real> arena{kArenaValues};           ///< nodes of a block and its halo: sums, later v-bar
+  AlignedArray<Real> friction_arena{kArenaValues};  ///< v-tilde
+  AlignedArray<Real> stress{kStrainComponents * kChunk};
+  AlignedArray<Real> velocity{3 * kChunk};
+  AlignedArray<Real> affine{kAffineComponents * kChunk};
+  AlignedArray<Real> value{kChunk};  ///< one number per particle, from the first half of an effect to its second
+};
+
+/// At most kChunk particles of one block and one set, on their way through the passes.
+template <class Real>
+struct Chunk {
+  ParticleSet<Real>& set;
+  std::size_t first;               ///< position in the set's channels
+  ParticleSpan<Real> particles;
+  Scratch<Real>& scratch;
+  Real dt;
+  double spacing;                  ///< dx, m
+  bool friction = false;           ///< whether v-tilde differs from v-bar here
+  std::uint64_t rows = 0;          ///< arena rows touched
+  std::size_t runs = 0;
+  const Real* velocity_bar[3] = {};                  ///< sum w v-bar, set by the gather
+  const Real* gradient_bar[kAffineComponents] = {};  ///< gradient of v-bar, 1/s
+  Motion<Real> motion;
+};
+
+/// The nodes of one block.
+template <class Real>
+struct NodeBlock {
+  State<Real>& state;
+  std::size_t block;  ///< position in the grid
+  Real* nodes;        ///< mass and velocity, kBlockValues numbers
+  Real dt;
+  double time;        ///< at the start of the step, s
+};
+
+/// What every pass declares.
+struct PassDescription {
+  std::string name;
+  std::string reason;               ///< which scene key asked for it; empty for the core
+  std::vector<std::string> reads;
+  std::vector<std::string> writes;
+};
+
+template <class Real>
+struct ParticlePass {
+  PassDescription description;
+  std::function<void(Chunk<Real>&)> run;
+};
+
+template <class Real>
+struct NodePass {
+  PassDescription description;
+  std::function<void(NodeBlock<Real>&)> run;
+};
+
+/// Rebuilds fields that follow the topology, after each order event.
+template <class Real>
+struct OrderPass {
+  PassDescription description;
+  std::function<void(State<Real>&)> run;
+};
+
+/// What bounds the step (see time_step.h); per set, in the order of the state's sets.
+struct StepLimits {
+  double max_step = 1.0;  ///< s
+  double cfl = 0.6, sound = 0.5, isolated = 0.9, strain = 0.5;
+  double solid_speed = 0.0;  ///< m/s, fastest collider
+  struct Stiffness {
+    double sound_speed;     ///< m/s
+    double dilation_speed;  ///< sqrt((3 lambda + 2 mu)/rho), m/s: the pulse of a particle alone
+  };
+  std::vector<Stiffness> sets;
+};
+
+/// Constants of stencil and transfer that the engine needs outside the kernels.
+struct TransferConstants {
+  int stencil = 0, transfer = 0;  ///< positions in the kernels' lists
+  double base_shift = 0.5;
+  double inverse_d = 4.0;
+};
+
+template <class Real>
+struct StepPlan {
+  const Kernels<Real>* kernels = nullptr;
+  TransferConstants transfer;
+  StepLimits limits;
+  Real least_mass = 0;  ///< kg; a node below it is empty
+
+  std::vector<OrderPass<Real>> order;
+  std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set
+  std::vector<NodePass<Real>> nodes;
+  std::vector<std::vector<ParticlePass<Real>>> gather;   ///< per set
+
+  /// Refuses a plan in which a pass reads what nothing before it provides, naming pass and quantity.
+  Result<void> validate() const;
+};
+
+}  // namespace repose

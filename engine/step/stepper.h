@@ -1,0 +1,80 @@
+// Repose: runs a step plan on a state. A step is refused before any particle is written when it would break:
+// the velocities of the nodes bound what particles can do, and only blocks whose bound is not enough gather on trial.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/base/parallel.h"
+#include "engine/base/profile.h"
+#include "engine/state/block_order.h"
+#include "engine/state/state.h"
+#include "engine/step/step_plan.h"
+#include "engine/step/time_step.h"
+
+namespace repose {
+
+/// The particle for whose sake a step was refused.
+struct Offender {
+  std::string set;
+  std::uint32_t id = 0;
+  Index3 block{0, 0, 0};
+  Vec3 position{0, 0, 0};       ///< m
+  Vec3 velocity{0, 0, 0};       ///< m/s, before the step
+  Vec3 trial_velocity{0, 0, 0}; ///< m/s, that the step would have moved it with
+  double determinant = 0.0;     ///< det(I + dt grad v)
+  std::string reason;           ///< "moves over a cell", "inverts", "is not finite"
+};
+
+struct StepReport {
+  bool accepted = false;
+  double dt = 0.0;
+  Limit limit = Limit::kMaxStep;
+  int redone = 0;                    ///< how often it was refused and halved
+  std::optional<Offender> offender;  ///< of the last refusal
+};
+
+template <class Real>
+class Stepper {
+ public:
+  Stepper(StepPlan<Real> plan, int threads);
+
+  /// One step of at most what the limits allow and `remaining` seconds (infinity: no frame to end on). If it is not
+  /// accepted after three halvings, no particle has changed.
+  StepReport step(State<Real>& state, double remaining);
+
+  const StepPlan<Real>& plan() const { return plan_; }
+  const Profile& profile() const { return profile_; }
+  void reset_profile() { profile_ = {}; }
+  Threads& threads() { return threads_; }
+  /// Memory of scratch and ordering.
+  std::size_t bytes() const;
+  /// Brings the order up to date, if it is due; a step does so by itself.
+  void order_if_due(State<Real>& state);
+
+ private:
+  void scatter(State<Real>& state, Real dt);
+  void scatter_block(State<Real>& state, std::size_t owner, Real dt);
+  void update_nodes(State<Real>& state, Real dt);
+  std::optional<Offender> inspect(State<Real>& state, Real dt);
+  std::optional<Offender> inspect_block(State<Real>& state, std::size_t owner, Real dt);
+  bool bounded(const State<Real>& state, std::size_t owner, Real dt) const;
+  void gather(State<Real>& state, Real dt);
+  Motion<Real> gather_block(State<Real>& state, std::size_t owner, Real dt);
+  void load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& scratch, bool& friction) const;
+  void finish(State<Real>& state, Real dt);
+  Scratch<Real>& scratch() { return scratch_[static_cast<std::size_t>(Threads::index())]; }
+  template <class Visit>
+  void for_each_chunk(State<Real>& state, std::size_t owner, Real dt, Visit visit);
+
+  StepPlan<Real> plan_;
+  Threads threads_;
+  BlockOrder<Real> order_;
+  std::vector<Scratch<Real>> scratch_;
+  std::vector<VelocityBounds<Real>> bounds_;  // per block
+  std::vector<Motion<Real>> motion_;          // per owner
+  std::vector<std::size_t> runs_;             // per owner
+  Profile profile_;
+};
+
+}  // namespace repose

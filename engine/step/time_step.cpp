@@ -1,0 +1,36 @@
+#include "engine/step/time_step.h"
+
+#include <cmath>
+
+namespace repose {
+
+const char* limit_name(Limit limit) {
+  constexpr const char* kNames[] = {"max_step", "velocity", "sound", "isolated", "strain", "frame"};
+  return kNames[static_cast<int>(limit)];
+}
+
+StepSize choose_step(const StepLimits& limits, const TransferConstants& transfer, double spacing,
+                     const Counters& counters, double remaining) {
+  StepSize step{limits.max_step, Limit::kMaxStep, limits.max_step};
+  const auto bound = [&step](double dt, Limit limit) {
+    if (dt < step.dt) step = {dt, limit, dt};
+  };
+  const double speed = std::max(counters.max_speed, limits.solid_speed);
+  if (speed > 0.0) bound(limits.cfl * spacing / speed, Limit::kVelocity);
+  if (counters.max_gradient > 0.0) bound(limits.strain / counters.max_gradient, Limit::kStrain);
+  for (const auto& set : limits.sets) {
+    bound(limits.sound * spacing / set.sound_speed, Limit::kSound);
+    const double feedback = 2.0 / std::sqrt(2.0 * transfer.inverse_d - transfer.inverse_d);
+    bound(limits.isolated * feedback * spacing / set.dilation_speed, Limit::kIsolated);
+  }
+  step.allowed = step.dt;
+  if (std::isfinite(remaining)) {
+    // A remainder that exceeds whole steps by rounding alone must not cost one more step.
+    const double steps = std::max(1.0, std::ceil(remaining / step.dt * (1.0 - 1e-12)));
+    if (steps <= 1.0) step.limit = Limit::kFrame;
+    step.dt = remaining / steps;
+  }
+  return step;
+}
+
+}  // namespace repose

@@ -1,0 +1,30 @@
+// Repose: how long a step may be. Each limit has a name, and the name of the one that bound is reported, so that a
+// slow run says why it is slow:
+//   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, section 5.6)
+//   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2, margins in docs/math.md
+//   isolated  a particle alone must not feed its own pulse: dt <= 2 dx / (a sqrt(2h - D^-1)), a^2 = (3 lambda + 2 mu)/rho;
+//             in the MLS form h = D^-1 (after Bai and Schroeder 2022)
+//   strain    dt |grad v| <= `strain`, which keeps det(I + dt grad v) > 0
+//   max_step  the scene's own bound
+//   frame     the step ends on the frame; steps of a frame's remainder are equal
+#pragma once
+
+#include "engine/state/state.h"
+#include "engine/step/step_plan.h"
+
+namespace repose {
+
+enum class Limit { kMaxStep, kVelocity, kSound, kIsolated, kStrain, kFrame };
+const char* limit_name(Limit limit);
+
+struct StepSize {
+  double dt = 0.0;  ///< s
+  Limit limit = Limit::kMaxStep;
+  double allowed = 0.0;  ///< what the limits allow before the frame cuts it, s
+};
+
+/// The next step: the shortest limit, shortened so that whole equal steps fill `remaining` seconds (infinity: no frame).
+StepSize choose_step(const StepLimits& limits, const TransferConstants& transfer, double spacing,
+                     const Counters& counters, double remaining);
+
+}  // namespace repose

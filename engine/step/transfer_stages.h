@@ -1,0 +1,40 @@
+// Repose: the core of every explicit step, as passes: stress and scatter on the way to the nodes; gather, advance,
+// trial strain and return map on the way back. v-bar (after collisions) moves positions and strain, v-tilde (after
+// friction) is what particles keep (Klar et al. 2016, section 5.4).
+#pragma once
+
+#include <memory>
+
+#include "engine/step/step_plan.h"
+
+namespace repose {
+
+/// A material ready for the kernels: its table and its constants.
+template <class Real>
+struct MaterialRuntime {
+  MaterialKernels<Real> kernels;
+  std::shared_ptr<const void> constants;  ///< the material's Constants<Real>
+};
+
+template <class Real>
+Lattice<Real> make_lattice(const State<Real>& state, const TransferConstants& transfer);
+
+template <class Real>
+ParticlePass<Real> stress_pass(const MaterialRuntime<Real>& material);
+template <class Real>
+ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice);
+template <class Real>
+ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice);
+template <class Real>
+ParticlePass<Real> advance_pass(const StepPlan<Real>& plan);
+template <class Real>
+ParticlePass<Real> trial_pass(const MaterialRuntime<Real>& material);
+/// Only for materials that yield.
+template <class Real>
+ParticlePass<Real> project_pass(const MaterialRuntime<Real>& material);
+
+/// p -> v = p/m, and which nodes are active.
+template <class Real>
+NodePass<Real> normalize_pass(const StepPlan<Real>& plan);
+
+}  // namespace repose
