@@ -1,0 +1,63 @@
+// Repose: the subcommands. Each takes its parsed arguments and returns the exit code of the process.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/scene/reader.h"
+#include "engine/simulation/simulation.h"
+
+namespace repose {
+
+/// What every command that takes a scene understands.
+struct SceneArguments {
+  std::string scene;
+  std::vector<std::string> set;   ///< --set a.b=value
+  bool allow_outside_paths = false;
+  int threads = 0;                ///< 0: all
+  std::string target;             ///< avx512, avx2, baseline; empty: the best
+};
+
+struct RunArguments {
+  SceneArguments scene;
+  std::string out;     ///< folder; empty: out/NAME
+  std::string frames;  ///< "A-B" or "N"; empty: as the scene says
+  bool resume = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+struct BenchArguments {
+  SceneArguments scene;
+  std::int64_t steps = 100;
+  std::string json;  ///< file; empty: none
+};
+
+struct MovieArguments {
+  std::string folder;
+  std::string out;  ///< film; empty: FOLDER/NAME.mp4
+  int width = 1280, height = 720;
+  int first = 1, last = 0;
+  bool pictures = false;  ///< keep a PNG per frame
+  int threads = 0;
+};
+
+int run_command(const RunArguments& arguments);
+int plan_command(const SceneArguments& arguments);
+int check_command(const SceneArguments& arguments);
+int bench_command(const BenchArguments& arguments);
+int info_command(const std::vector<std::string>& files);
+int movie_command(const MovieArguments& arguments);
+int schema_command(bool reference);
+
+/// Prints "repose: error: ..." and gives the exit code.
+int fail(const Error& error);
+
+/// Reads the scene that the arguments name.
+Result<Scene> read_scene(const SceneArguments& arguments);
+/// Options for the engine; error 64 for an unknown or unsupported target.
+Result<SimulationOptions> simulation_options(const SceneArguments& arguments);
+
+}  // namespace repose

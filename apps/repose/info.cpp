@@ -1,0 +1,100 @@
+// Repose: `repose info`: what a cache, a checkpoint or a run's folder holds.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/repose/command.h"
+#include "apps/repose/run_log.h"
+#include "engine/io/checkpoint.h"
+#include "engine/io/point_cloud.h"
+
+namespace repose {
+namespace {
+
+void print_points(const std::string& path, const PointCloud& points) {
+  Vec3 lower = Bounds().lower, upper = Bounds().upper;
+  double fastest = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const Vec3 x(points.position[p][0], points.position[p][1], points.position[p][2]);
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+    const auto& v = points.velocity[p];
+    fastest = std::max(fastest, std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]));
+  }
+  std::printf("%s: %zu points, spacing %g m\n", path.c_str(), points.size(), points.spacing);
+  if (points.size() == 0) return;
+  std::printf("  bounds  (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m\n", lower[0], lower[1], lower[2], upper[0], upper[1],
+              upper[2]);
+  std::printf("  fastest %.4g m/s\n  attributes P v id pscale", fastest);
+  for (const PointAttribute& attribute : points.attributes) std::printf(" %s", attribute.name.c_str());
+  std::printf("\n");
+}
+
+int print_run(const std::string& folder) {
+  auto log = read_run_log(folder);
+  if (!log) return fail(log.error());
+  const Json::Value& frames = (*log)["frames"];
+  double deepest = 0.0, seconds = 0.0;
+  std::int64_t steps = 0, at = 0;
+  std::string solid;
+  for (const Json::Value& frame : frames) {
+    seconds += frame["seconds"]["wall"].asDouble();
+    steps += frame["steps"].asInt64();
+    const double cells = frame["deepest"]["cells"].asDouble();
+    if (cells <= deepest) continue;
+    deepest = cells;
+    at = frame["frame"].asInt64();
+    solid = frame["deepest"]["solid"].asString();
+  }
+  std::printf("%s: run of %s by Repose %s, %s, %d threads: %s\n", folder.c_str(), (*log)["scene"]["name"].asCString(),
+              (*log)["repose"].asCString(), (*log)["target"].asCString(), (*log)["threads"].asInt(),
+              (*log)["end"].asCString());
+  std::printf("  frames  %u, %lld steps, %.1f s of simulation\n", frames.size(), static_cast<long long>(steps), seconds);
+  if (!frames.empty()) {
+    const Json::Value& last = frames[frames.size() - 1];
+    std::printf("  last    t %.4f s, %llu particles, %.6g kg, hash %s\n", last["time"].asDouble(),
+                static_cast<unsigned long long>(last["particles"].asUInt64()), last["mass"].asDouble(),
+                last["hash"].asCString());
+  }
+  if (solid.empty()) {
+    std::printf("  deepest no particle was ever inside a solid\n");
+  } else {
+    std::printf("  deepest %.3f cells inside '%s', at frame %lld\n", deepest, solid.c_str(), static_cast<long long>(at));
+  }
+  return 0;
+}
+
+int print_checkpoint(const std::string& path) {
+  auto header = read_checkpoint_header(path);
+  if (!header) return fail(header.error());
+  std::printf("%s: checkpoint after frame %lld and step %lld, t %.6f s\n  %llu particles, %s precision, scene %s\n",
+              path.c_str(), static_cast<long long>(header->counters.frame), static_cast<long long>(header->counters.step),
+              header->counters.time, static_cast<unsigned long long>(header->particles),
+              header->precision_bytes == 4 ? "single" : "double", header->scene_hash.c_str());
+  return 0;
+}
+
+int print_file(const std::string& path) {
+  if (std::filesystem::is_directory(path)) return print_run(path);
+  const std::string extension = std::filesystem::path(path).extension();
+  if (extension == ".checkpoint") return print_checkpoint(path);
+  if (extension != ".vdb" && extension != ".ply") {
+    return fail({ErrorKind::kUsage, "is not a .vdb, .ply or .checkpoint file, nor the folder of a run", path});
+  }
+  auto points = extension == ".vdb" ? read_vdb_points(path) : read_ply(path);
+  if (!points) return fail(points.error());
+  print_points(path, *points);
+  return 0;
+}
+
+}  // namespace
+
+int info_command(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    if (const int code = print_file(file); code != 0) return code;
+  }
+  return 0;
+}
+
+}  // namespace repose

@@ -1,0 +1,105 @@
+// Repose: the command.
+#include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
+
+#include <thread>
+
+#include "apps/repose/command.h"
+
+namespace repose {
+namespace {
+
+void add_scene_options(CLI::App& command, SceneArguments& arguments) {
+  command.add_option("scene", arguments.scene, "scene file (JSON)")->required();
+  command.add_option("--set", arguments.set, "override a key: a.b=value; may be given again");
+  command.add_flag("--allow-outside-paths", arguments.allow_outside_paths,
+                   "allow meshes outside the scene's folder");
+  command.add_option("--threads", arguments.threads, "threads (default: all)")->check(CLI::Range(1, 1024));
+  command.add_option("--target", arguments.target, "instruction set: avx512, avx2, baseline (default: the best)")
+      ->envname("REPOSE_TARGET");
+}
+
+/// Lets the engine's arenas have the threads that were asked for, even beyond the cores.
+class Workers {
+ public:
+  explicit Workers(int threads)
+      : control_(tbb::global_control::max_allowed_parallelism,
+                 static_cast<std::size_t>(std::max(threads, static_cast<int>(std::thread::hardware_concurrency())))) {}
+
+ private:
+  tbb::global_control control_;
+};
+
+int main(int count, char** words) {
+  CLI::App app{"Repose: sand by the Material Point Method", "repose"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", REPOSE_VERSION);
+  int code = 0;
+
+  RunArguments run;
+  CLI::App& run_app = *app.add_subcommand("run", "simulate a scene; caches, log and checkpoints go to a folder");
+  add_scene_options(run_app, run.scene);
+  run_app.add_option("--out", run.out, "folder (default: out/NAME)");
+  run_app.add_option("--frames", run.frames, "A-B: write frames A to B; B: all up to B");
+  run_app.add_flag("--resume", run.resume, "go on after the newest checkpoint in the folder");
+  run_app.add_flag("--json", run.json, "one line of JSON per frame on standard output");
+  run_app.add_flag("--quiet", run.quiet, "say nothing but errors");
+  run_app.callback([&] {
+    const Workers workers(run.scene.threads);
+    code = run_command(run);
+  });
+
+  SceneArguments plan;
+  CLI::App& plan_app = *app.add_subcommand("plan", "the step that a scene compiles to; effects, memory and time");
+  add_scene_options(plan_app, plan);
+  plan_app.callback([&] { code = plan_command(plan); });
+
+  SceneArguments check;
+  CLI::App& check_app = *app.add_subcommand("check", "validate a scene and its meshes");
+  add_scene_options(check_app, check);
+  check_app.callback([&] { code = check_command(check); });
+
+  BenchArguments bench;
+  CLI::App& bench_app = *app.add_subcommand("bench", "time per phase, particle and step; hash of the end state");
+  add_scene_options(bench_app, bench.scene);
+  bench_app.add_option("--steps", bench.steps, "steps (default 100)")->check(CLI::PositiveNumber);
+  bench_app.add_option("--json", bench.json, "write the figures to a file");
+  bench_app.callback([&] {
+    const Workers workers(bench.scene.threads);
+    code = bench_command(bench);
+  });
+
+  std::vector<std::string> files;
+  CLI::App& info_app = *app.add_subcommand("info", "what a cache, a checkpoint or a run's folder holds");
+  info_app.add_option("files", files, ".vdb, .ply, .checkpoint, or the folder of a run")->required();
+  info_app.callback([&] { code = info_command(files); });
+
+  MovieArguments movie;
+  CLI::App& movie_app = *app.add_subcommand("movie", "a film of a run");
+  movie_app.add_option("folder", movie.folder, "the folder of the run")->required();
+  movie_app.add_option("--out", movie.out, "film (default: FOLDER/NAME.mp4)");
+  movie_app.add_option("--width", movie.width, "pixels (default 1280)")->check(CLI::Range(16, 8192));
+  movie_app.add_option("--height", movie.height, "pixels (default 720)")->check(CLI::Range(16, 8192));
+  movie_app.add_option("--first", movie.first, "first frame (default 1)")->check(CLI::PositiveNumber);
+  movie_app.add_option("--last", movie.last, "last frame (default: all)")->check(CLI::PositiveNumber);
+  movie_app.add_flag("--pictures", movie.pictures, "keep a PNG of each frame beside its cache");
+  movie_app.callback([&] { code = movie_command(movie); });
+
+  bool reference = false;
+  CLI::App& schema_app = *app.add_subcommand("schema", "the JSON Schema of scene files");
+  schema_app.add_flag("--reference", reference, "the same as a Markdown table");
+  schema_app.callback([&] { code = schema_command(reference); });
+
+  try {
+    app.parse(count, words);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? 0 : static_cast<int>(ErrorKind::kUsage);
+  }
+  return code;
+}
+
+}  // namespace
+}  // namespace repose
+
+int main(int count, char** words) { return repose::main(count, words); }

@@ -1,0 +1,181 @@
+// Repose: `repose movie`: pictures and a film of a run, from its caches and the solids of its scene.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "apps/repose/command.h"
+#include "apps/repose/progress.h"
+#include "apps/repose/render/film.h"
+#include "apps/repose/render/grains.h"
+#include "apps/repose/run_log.h"
+#include "engine/io/point_cloud.h"
+
+namespace repose {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The cached frames of a run, oldest first.
+std::vector<std::string> cached_frames(const std::string& folder, const std::string& name) {
+  std::vector<std::string> files;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    const std::string file = entry.path().filename().string();
+    if (file.starts_with(name + ".points.") && (file.ends_with(".vdb") || file.ends_with(".ply"))) {
+      files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  // One file per frame where a run wrote both formats.
+  const auto stem = [](const std::string& file) { return fs::path(file).replace_extension().string(); };
+  files.erase(std::unique(files.begin(), files.end(),
+                          [&](const auto& a, const auto& b) { return stem(a) == stem(b); }), files.end());
+  return files;
+}
+
+Result<PointCloud> read_points(const std::string& path) {
+  return path.ends_with(".vdb") ? read_vdb_points(path) : read_ply(path);
+}
+
+std::vector<Grain> grains_of(const PointCloud& points) {
+  const PointAttribute* material = nullptr;
+  for (const PointAttribute& attribute : points.attributes) {
+    if (attribute.name == "material") material = &attribute;
+  }
+  std::vector<Grain> grains(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      grains[p].position[axis] = static_cast<float>(points.position[p][static_cast<std::size_t>(axis)]);
+    }
+    grains[p].radius = points.radius[p];
+    grains[p].id = points.id[p];
+    if (material != nullptr) grains[p].material = static_cast<std::uint8_t>(material->values[p]);
+  }
+  return grains;
+}
+
+void include(Bounds& bounds, const Bounds& other) {
+  bounds.lower = bounds.lower.cwiseMin(other.lower);
+  bounds.upper = bounds.upper.cwiseMax(other.upper);
+}
+
+Bounds bounds_of(const PointCloud& points) {
+  Bounds bounds;
+  for (const auto& x : points.position) {
+    const Vec3 at(x[0], x[1], x[2]);
+    include(bounds, {at, at});
+  }
+  return bounds;
+}
+
+/// Solids as meshes. `extent` is how far an endless plane is drawn, m.
+std::vector<SolidMesh> draw_solids(const Scene& scene, const std::vector<Solid>& solids, double extent) {
+  std::vector<SolidMesh> meshes;
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    const Collider& collider = scene.colliders[k];
+    if (collider.appearance == Appearance::kHidden) continue;
+    const bool glass = collider.appearance == Appearance::kGlass ||
+                       (collider.appearance == Appearance::kAuto && collider.hollow);
+    const bool plane = collider.shape.type == ShapeDescription::Type::kPlane;
+    SolidMesh mesh{solids[k].shape->surface(extent), glass, {}};
+    if (!glass && !plane) mesh.color = {0.36f, 0.20f, 0.10f};  // warm wood, apart from sand and ground
+    meshes.push_back(std::move(mesh));
+  }
+  return meshes;
+}
+
+/// The scene's camera, or one that sees all of the material and the glass around it.
+Camera choose_camera(const Scene& scene, const std::vector<Solid>& solids, const Bounds& material,
+                     const MovieArguments& arguments) {
+  Camera camera;
+  camera.width = arguments.width;
+  camera.height = arguments.height;
+  camera.up = scene.up == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+  camera.fov = scene.camera.field_of_view;
+  if (scene.camera.given) {
+    camera.eye = scene.camera.eye;
+    camera.target = scene.camera.target;
+    return camera;
+  }
+  Bounds bounds = material;
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    if (scene.colliders[k].hollow && solids[k].shape->bounds().upper.allFinite()) include(bounds, solids[k].shape->bounds());
+  }
+  const Vec3 direction = scene.up == UpAxis::kY ? Vec3(0.45, 0.32, 1.0) : Vec3(0.45, -1.0, 0.32);
+  camera.target = 0.5 * (bounds.lower + bounds.upper);
+  camera.eye = camera.target + direction.normalized() * (bounds.upper - bounds.lower).norm();
+  return frame_bounds(camera, bounds);
+}
+
+struct Shoot {
+  Scene scene;
+  std::vector<Solid> solids;
+  std::vector<std::string> frames;
+};
+
+/// What is to be filmed, from the folder of a run.
+Result<Shoot> prepare(const MovieArguments& arguments) {
+  auto log = read_run_log(arguments.folder);
+  if (!log) return log.error();
+  std::ifstream file(arguments.folder + "/scene.json");
+  if (!file) return Error{ErrorKind::kNoInput, "cannot be read", arguments.folder + "/scene.json"};
+  std::stringstream text;
+  text << file.rdbuf();
+  // The meshes that the scene names lie where the scene did.
+  auto scene = read_scene_text(text.str(), arguments.folder + "/scene.json", (*log)["scene"]["folder"].asString(),
+                               ReadOptions{{}, true});
+  if (!scene) return scene.error();
+  auto solids = build_solids(*scene, true);
+  if (!solids) return solids.error();
+  Shoot shoot{std::move(*scene), std::move(*solids), {}};
+  const auto frames = cached_frames(arguments.folder, shoot.scene.name);
+  const std::size_t last = arguments.last > 0 ? static_cast<std::size_t>(arguments.last) : frames.size();
+  for (std::size_t k = static_cast<std::size_t>(arguments.first) - 1; k < std::min(last, frames.size()); ++k) {
+    shoot.frames.push_back(frames[k]);
+  }
+  if (shoot.frames.empty()) {
+    return Error{ErrorKind::kNoInput, "holds no points for these frames; was the run made with output.vdb or output.ply?",
+                 arguments.folder};
+  }
+  return shoot;
+}
+
+}  // namespace
+
+int movie_command(const MovieArguments& arguments) {
+  auto shoot = prepare(arguments);
+  if (!shoot) return fail(shoot.error());
+  Bounds material;
+  for (const std::string& path : {shoot->frames.front(), shoot->frames.back()}) {
+    auto points = read_points(path);
+    if (!points) return fail(points.error());
+    include(material, bounds_of(*points));
+  }
+  const Camera camera = choose_camera(shoot->scene, shoot->solids, material, arguments);
+  const auto solids = draw_solids(shoot->scene, shoot->solids, 12.0 * (camera.eye - camera.target).norm());
+  const std::string path =
+      arguments.out.empty() ? arguments.folder + "/" + shoot->scene.name + ".mp4" : arguments.out;
+  auto film = Film::start(path, arguments.width, arguments.height, shoot->scene.time.frames_per_second);
+  if (!film) return fail(film.error());
+  Progress progress("movie", static_cast<double>(shoot->frames.size()), true);
+  for (std::size_t k = 0; k < shoot->frames.size(); ++k) {
+    auto points = read_points(shoot->frames[k]);
+    if (!points) return fail(points.error());
+    const Image image = render_grains(grains_of(*points), solids, camera, Light{}, RenderOptions{});
+    if (auto added = film->add(image); !added) return fail(added.error());
+    if (arguments.pictures) {
+      const std::string picture = fs::path(shoot->frames[k]).replace_extension(".png").string();
+      if (auto written = write_png(image, picture); !written) return fail(written.error());
+    }
+    progress.update(static_cast<double>(k + 1), shoot->frames[k]);
+  }
+  progress.finish("done");
+  if (auto finished = film->finish(); !finished) return fail(finished.error());
+  std::printf("%s\n", path.c_str());
+  return 0;
+}
+
+}  // namespace repose

@@ -1,0 +1,107 @@
+// Repose: `repose plan` and `repose check`: what a scene would do, before it does it.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/repose/command.h"
+#include "engine/step/time_step.h"
+
+namespace repose {
+namespace {
+
+/// ns per particle and step on one core with AVX-512, from docs/benchmarks.md; the forecast says "about".
+constexpr double kNanoseconds = 40.0;
+
+std::string join(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+void print_passes(const Simulation& simulation) {
+  std::printf("\nstep\n");
+  std::string phase;
+  for (const auto& [where, pass] : simulation.passes()) {
+    if (where != phase) std::printf("  %s\n", where.c_str());
+    phase = where;
+    std::printf("    %-26s reads %s; writes %s%s%s\n", pass.name.c_str(), join(pass.reads).c_str(),
+                join(pass.writes).c_str(), pass.reason.empty() ? "" : "   <- ", pass.reason.c_str());
+  }
+}
+
+void print_effects(const Scene& scene) {
+  std::printf("\neffects\n");
+  for (const EffectStatus& effect : effect_status(scene)) {
+    std::printf("  %-20s %-4s %2zu bytes per particle   %s\n", effect.name.c_str(), effect.on ? "on" : "off",
+                effect.bytes_per_particle, effect.reason.c_str());
+  }
+}
+
+void print_forecast(const Scene& scene, const Simulation& simulation) {
+  const MemoryUse memory = simulation.memory();
+  const auto particles = static_cast<double>(simulation.particles());
+  double dt = scene.time.max_step;
+  for (const BodyDescription& body : scene.bodies) {
+    for (const MaterialDescription& material : scene.materials) {
+      if (material.name != body.material) continue;
+      dt = std::min(dt, scene.time.sound * scene.grid.spacing / material.elasticity().sound_speed());
+    }
+  }
+  const double duration = static_cast<double>(scene.time.frames) / scene.time.frames_per_second;
+  const double steps = duration / dt;
+  std::printf("\nforecast\n");
+  std::printf("  particles           %zu\n", simulation.particles());
+  std::printf("  bytes per particle  %zu\n", bytes_per_particle(scene));
+  std::printf("  memory              %.1f MB particles and order, %.1f MB grid (%zu blocks at the start)\n",
+              1e-6 * particles * static_cast<double>(bytes_per_particle(scene)), 1e-6 * static_cast<double>(memory.grid_bytes),
+              memory.blocks);
+  std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
+  std::printf("  time                about %.0f s on %d thread%s\n",
+              steps * particles * kNanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
+              simulation.threads() == 1 ? "" : "s");
+}
+
+}  // namespace
+
+int plan_command(const SceneArguments& arguments) {
+  auto scene = read_scene(arguments);
+  if (!scene) return fail(scene.error());
+  auto options = simulation_options(arguments);
+  if (!options) return fail(options.error());
+  auto simulation = Simulation::create(*scene, *options);
+  if (!simulation) return fail(simulation.error());
+  std::printf("%s: dx %g m, %s precision, %s\n", scene->name.c_str(), scene->grid.spacing,
+              scene->grid.precision == Precision::kSingle ? "single" : "double", target_name((*simulation)->target()));
+  print_effects(*scene);
+  print_passes(**simulation);
+  print_forecast(*scene, **simulation);
+  return 0;
+}
+
+int check_command(const SceneArguments& arguments) {
+  auto scene = read_scene(arguments);
+  if (!scene) return fail(scene.error());
+  auto options = simulation_options(arguments);
+  if (!options) return fail(options.error());
+  // Meshes and bodies can be wrong too: build everything, run nothing.
+  auto simulation = Simulation::create(*scene, *options);
+  if (!simulation) return fail(simulation.error());
+  for (const MaterialDescription& material : scene->materials) {
+    if (material.type != MaterialType::kDruckerPrager) continue;
+    const double alpha = material.drucker_prager.cone_slope();
+    if (3.0 * alpha / std::sqrt(2.0) >= 1.0) {
+      std::printf("warning: materials.%s: with friction_angle %g and this cone_matching the sand can never yield in plane "
+                  "strain; see docs/math.md on cone matching\n",
+                  material.name.c_str(), material.drucker_prager.friction_angle);
+    }
+  }
+  std::printf("%s: good; %zu particles\n", arguments.scene.c_str(), (*simulation)->particles());
+  return 0;
+}
+
+int schema_command(bool reference) {
+  std::printf("%s\n", (reference ? scene_reference() : scene_schema()).c_str());
+  return 0;
+}
+
+}  // namespace repose

@@ -1,0 +1,246 @@
+// Repose: `repose run`: simulates a scene frame by frame and leaves caches, a log and a state to resume from.
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "apps/repose/command.h"
+#include "apps/repose/output_folder.h"
+#include "apps/repose/progress.h"
+#include "apps/repose/run_log.h"
+#include "engine/io/atomic_file.h"
+#include "engine/io/point_cloud.h"
+
+namespace repose {
+namespace {
+
+volatile std::sig_atomic_t g_signal = 0;
+
+/// The first signal asks for a clean end, a second one stops at once.
+void on_signal(int signal) {
+  if (g_signal != 0) std::_Exit(128 + signal);
+  g_signal = signal;
+}
+
+struct FrameRange {
+  std::int64_t first, last;
+};
+
+/// "A-B" writes frames A to B, "B" all up to B.
+Result<FrameRange> parse_frames(const std::string& text, std::int64_t frames) {
+  if (text.empty()) return FrameRange{1, frames};
+  long long first = 1, last = 0;
+  char rest = 0;
+  const bool range = std::sscanf(text.c_str(), "%lld-%lld%c", &first, &last, &rest) == 2;
+  const bool single = !range && (first = 1, std::sscanf(text.c_str(), "%lld%c", &last, &rest) == 1);
+  if ((!range && !single) || first < 1 || last < first) {
+    return Error{ErrorKind::kUsage, "'" + text + "' is not a range of frames; give A-B or B, counted from 1", "--frames"};
+  }
+  return FrameRange{first, last};
+}
+
+Result<void> write_text(const std::string& path, const std::string& text) {
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  if (auto written = file->write(text.data(), text.size()); !written) return written;
+  return file->commit();
+}
+
+class Run {
+ public:
+  Run(const RunArguments& arguments, Scene scene, FrameRange frames, OutputFolder folder,
+      std::unique_ptr<Simulation> simulation)
+      : arguments_(arguments),
+        scene_(std::move(scene)),
+        frames_(frames),
+        folder_(std::move(folder)),
+        simulation_(std::move(simulation)),
+        log_(scene_, *simulation_) {}
+
+  int go();
+
+ private:
+  Result<void> resume();
+  Result<FrameReport> advance(Progress& progress);
+  Result<void> write_frame(const FrameReport& frame);
+  Result<void> write_caches(std::int64_t frame);
+  Result<void> write_bundle(const Error& error);
+  int interrupted();
+  int stop(const Error& error);
+  void tell(const FrameReport& frame, const Json::Value& row) const;
+
+  const RunArguments& arguments_;
+  Scene scene_;
+  FrameRange frames_;
+  OutputFolder folder_;
+  std::unique_ptr<Simulation> simulation_;
+  RunLog log_;
+  std::vector<std::string> vtp_;
+  std::vector<double> vtp_times_;
+};
+
+Result<void> Run::resume() {
+  for (const std::int64_t frame : folder_.checkpoints()) {
+    const std::string path = folder_.checkpoint(frame);
+    auto loaded = simulation_->load(path);
+    if (loaded) {
+      log_.continue_from(folder_.log(), simulation_->counters().frame);
+      if (!arguments_.json) std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
+      return {};
+    }
+    if (loaded.error().kind != ErrorKind::kIo) return loaded;
+    std::fprintf(stderr, "repose: warning: %s\n", loaded.error().text().c_str());
+  }
+  return Error{ErrorKind::kNoInput, "holds no checkpoint to resume from; run without --resume", folder_.path()};
+}
+
+Result<FrameReport> Run::advance(Progress& progress) {
+  const double fps = scene_.time.frames_per_second;
+  const auto start = std::chrono::steady_clock::now();
+  std::int64_t steps = 0;
+  return simulation_->advance_frame([&](const StepReport& step, const Counters& counters) {
+    ++steps;
+    if (progress.visible()) {
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double ns = 1e9 * seconds / (static_cast<double>(steps) * static_cast<double>(simulation_->particles()));
+      char detail[160];
+      std::snprintf(detail, sizeof detail, "frame %lld/%lld  step %lld  dt %.3g s (%s)  %zu particles  %zu blocks  %.0f ns",
+                    static_cast<long long>(counters.frame) + 1, static_cast<long long>(frames_.last),
+                    static_cast<long long>(counters.step), step.dt, limit_name(step.limit), simulation_->particles(),
+                    simulation_->memory().blocks, ns);
+      progress.update(counters.time * fps, detail);
+    }
+    return g_signal == 0;
+  });
+}
+
+Result<void> Run::write_caches(std::int64_t frame) {
+  const OutputDescription& output = scene_.output;
+  if (!output.vdb && !output.ply && !output.vtp) return {};
+  const PointCloud points = simulation_->points();
+  if (output.vdb) {
+    if (auto written = write_vdb_points(points, folder_.frame("points", frame, "vdb")); !written) return written;
+  }
+  if (output.ply) {
+    if (auto written = write_ply(points, folder_.frame("points", frame, "ply")); !written) return written;
+  }
+  if (output.vtp) {
+    const std::string path = folder_.frame("points", frame, "vtp");
+    if (auto written = write_vtp(points, path); !written) return written;
+    vtp_.push_back(path);
+    vtp_times_.push_back(simulation_->counters().time);
+    return write_vtp_series(vtp_, vtp_times_, folder_.path() + "/" + scene_.name + ".points.vtp.series");
+  }
+  return {};
+}
+
+Result<void> Run::write_frame(const FrameReport& frame) {
+  if (frame.frame >= frames_.first) {
+    if (auto written = write_caches(frame.frame); !written) return written;
+  }
+  const Json::Value& row = log_.add(frame, *simulation_);
+  tell(frame, row);
+  if (auto written = log_.write(folder_.log()); !written) return written;
+  if (!scene_.output.checkpoint) return {};
+  if (auto saved = simulation_->save(folder_.checkpoint(frame.frame)); !saved) return saved;
+  folder_.prune_checkpoints();
+  return {};
+}
+
+void Run::tell(const FrameReport& frame, const Json::Value& row) const {
+  if (arguments_.json) {
+    std::printf("%s\n", one_line(row).c_str());
+    std::fflush(stdout);
+  } else if (!arguments_.quiet && isatty(STDERR_FILENO) == 0) {
+    std::printf("frame %lld/%lld  t %.4f s  %lld steps  %.1f s\n", static_cast<long long>(frame.frame),
+                static_cast<long long>(frames_.last), frame.time, static_cast<long long>(frame.steps), frame.seconds);
+    std::fflush(stdout);
+  }
+}
+
+Result<void> Run::write_bundle(const Error& error) {
+  const std::string folder = folder_.path() + "/diagnostics";
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  Json::Value json;
+  json["error"] = error.text();
+  json["step"] = Json::Int64(simulation_->counters().step);
+  json["time"] = simulation_->counters().time;
+  if (const auto& offender = simulation_->offender()) {
+    Json::Value& particle = json["particle"];
+    particle["set"] = offender->set;
+    particle["id"] = offender->id;
+    particle["reason"] = offender->reason;
+    particle["determinant"] = offender->determinant;
+    for (int axis = 0; axis < 3; ++axis) {
+      particle["block"].append(offender->block[static_cast<std::size_t>(axis)]);
+      particle["position"].append(offender->position[axis]);
+      particle["velocity"].append(offender->velocity[axis]);
+      particle["trial_velocity"].append(offender->trial_velocity[axis]);
+    }
+  }
+  json["memory_blocks"] = Json::UInt64(simulation_->memory().blocks);
+  if (auto written = write_text(folder + "/failure.json", json.toStyledString()); !written) return written;
+  if (auto saved = simulation_->save(folder + "/last_good.checkpoint"); !saved) return saved;
+  return write_text(folder + "/scene.json", scene_.canonical + "\n");
+}
+
+int Run::interrupted() {
+  const int signal = g_signal;
+  log_.end("interrupted");
+  if (auto saved = simulation_->save(folder_.checkpoint(simulation_->counters().frame)); !saved) return fail(saved.error());
+  if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
+  std::fprintf(stderr, "\nrepose: interrupted; state saved, go on with: repose run --resume\n");
+  return 128 + signal;
+}
+
+int Run::stop(const Error& error) {
+  log_.end(error.text());
+  if (error.kind == ErrorKind::kPhysics) {
+    if (auto written = write_bundle(error); !written) fail(written.error());
+    else std::fprintf(stderr, "repose: what led to it is in %s/diagnostics\n", folder_.path().c_str());
+  }
+  if (auto written = log_.write(folder_.log()); !written) fail(written.error());
+  return fail(error);
+}
+
+int Run::go() {
+  if (arguments_.resume) {
+    if (auto resumed = resume(); !resumed) return fail(resumed.error());
+  }
+  if (auto written = write_text(folder_.scene(), scene_.canonical + "\n"); !written) return fail(written.error());
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);
+  while (simulation_->counters().frame < frames_.last) {
+    auto frame = advance(progress);
+    if (!frame) return stop(frame.error());
+    if (g_signal != 0) return interrupted();
+    if (auto written = write_frame(*frame); !written) return stop(written.error());
+  }
+  log_.end("complete");
+  if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
+  progress.finish("done");
+  if (!arguments_.json && !arguments_.quiet) std::printf("%s\n", folder_.path().c_str());
+  return 0;
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  auto scene = read_scene(arguments.scene);
+  if (!scene) return fail(scene.error());
+  auto options = simulation_options(arguments.scene);
+  if (!options) return fail(options.error());
+  auto frames = parse_frames(arguments.frames, scene->time.frames);
+  if (!frames) return fail(frames.error());
+  auto folder = OutputFolder::open(arguments.out.empty() ? "out/" + scene->name : arguments.out, scene->name);
+  if (!folder) return fail(folder.error());
+  auto simulation = Simulation::create(*scene, *options);
+  if (!simulation) return fail(simulation.error());
+  return Run(arguments, std::move(*scene), *frames, std::move(*folder), std::move(*simulation)).go();
+}
+
+}  // namespace repose

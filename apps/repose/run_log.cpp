@@ -1,0 +1,139 @@
+#include "apps/repose/run_log.h"
+
+#include <json/reader.h>
+#include <json/writer.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/io/atomic_file.h"
+
+namespace repose {
+namespace {
+
+Json::Value vector_json(const Vec3& v) {
+  Json::Value json(Json::arrayValue);
+  for (int axis = 0; axis < 3; ++axis) json.append(v[axis]);
+  return json;
+}
+
+Json::Value limits_json(const FrameReport& frame) {
+  Json::Value json(Json::objectValue);
+  for (std::size_t k = 0; k < frame.limits.size(); ++k) {
+    if (frame.limits[k] > 0) json[limit_name(static_cast<Limit>(k))] = Json::Int64(frame.limits[k]);
+  }
+  return json;
+}
+
+void add_figures(const Diagnostics& d, double spacing, Json::Value& row) {
+  row["particles"] = Json::UInt64(d.particles);
+  row["mass"] = d.mass;
+  row["volume"] = d.volume;
+  row["energy"]["kinetic"] = d.kinetic_energy;
+  row["energy"]["affine"] = d.affine_energy;
+  row["energy"]["elastic"] = d.elastic_energy;
+  row["energy"]["potential"] = d.potential_energy;
+  row["momentum"] = vector_json(d.momentum);
+  row["angular_momentum"] = vector_json(d.angular_momentum);
+  row["center_of_mass"] = vector_json(d.center_of_mass);
+  row["lower"] = vector_json(d.lower);
+  row["upper"] = vector_json(d.upper);
+  row["max_speed"] = d.max_speed;
+  row["deepest"]["meters"] = d.deepest;
+  row["deepest"]["cells"] = d.deepest / spacing;
+  if (!d.deepest_solid.empty()) {
+    row["deepest"]["solid"] = d.deepest_solid;
+    row["deepest"]["id"] = d.deepest_id;
+  }
+}
+
+std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+}  // namespace
+
+std::string one_line(const Json::Value& json) {
+  Json::StreamWriterBuilder builder;
+  builder["indentation"] = "";
+  return Json::writeString(builder, json);
+}
+
+RunLog::RunLog(const Scene& scene, const Simulation& simulation) {
+  log_["repose"] = REPOSE_VERSION;
+  log_["compiler"] = __VERSION__;
+  log_["target"] = target_name(simulation.target());
+  log_["threads"] = simulation.threads();
+  log_["scene"]["name"] = scene.name;
+  log_["scene"]["hash"] = scene_hash(scene);
+  log_["scene"]["folder"] = std::filesystem::absolute(scene.folder.empty() ? "." : scene.folder).lexically_normal().string();
+  log_["scene"]["spacing"] = scene.grid.spacing;
+  log_["scene"]["frames_per_second"] = scene.time.frames_per_second;
+  log_["precision"] = scene.grid.precision == Precision::kSingle ? "single" : "double";
+  for (const EffectStatus& effect : effect_status(scene)) {
+    Json::Value& json = log_["effects"][effect.name];
+    json["on"] = effect.on;
+    json["why"] = effect.reason;
+    json["bytes_per_particle"] = Json::UInt64(effect.bytes_per_particle);
+  }
+  log_["frames"] = Json::Value(Json::arrayValue);
+  log_["end"] = "running";
+}
+
+void RunLog::continue_from(const std::string& path, std::int64_t last) {
+  std::ifstream file(path);
+  Json::Value old;
+  if (!file || !Json::parseFromStream(Json::CharReaderBuilder(), file, &old, nullptr)) return;
+  for (const Json::Value& frame : old["frames"]) {
+    if (frame["frame"].asInt64() <= last) log_["frames"].append(frame);
+  }
+}
+
+const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation) {
+  Json::Value row;
+  row["frame"] = Json::Int64(frame.frame);
+  row["time"] = frame.time;
+  row["steps"] = Json::Int64(frame.steps);
+  row["dt"]["least"] = frame.least_dt;
+  row["dt"]["largest"] = frame.largest_dt;
+  row["bound_by"] = limits_json(frame);
+  row["redone"] = Json::Int64(frame.redone);
+  row["solver_iterations"] = 0;  // explicit steps solve nothing
+  row["seconds"]["wall"] = frame.seconds;
+  for (std::size_t k = 0; k < kPhaseNames.size(); ++k) row["seconds"][kPhaseNames[k]] = frame.profile.seconds[k];
+  add_figures(simulation.diagnose(), log_["scene"]["spacing"].asDouble(), row);
+  // Mass neither enters nor leaves: there is no emitter and no sink.
+  row["ledger"]["emitted"] = 0.0;
+  row["ledger"]["removed"] = 0.0;
+  row["ledger"]["held"] = row["mass"];
+  row["blocks"] = Json::UInt64(simulation.memory().blocks);
+  row["hash"] = hex(simulation.hash());
+  return log_["frames"].append(row);
+}
+
+Result<void> RunLog::write(const std::string& path) const {
+  Json::StreamWriterBuilder builder;
+  builder["indentation"] = " ";
+  const std::string text = Json::writeString(builder, log_) + "\n";
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  if (auto written = file->write(text.data(), text.size()); !written) return written;
+  return file->commit();
+}
+
+Result<Json::Value> read_run_log(const std::string& folder) {
+  const std::string path = folder + "/run.json";
+  std::ifstream file(path);
+  if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is this the folder of a run?", path};
+  Json::Value log;
+  std::string message;
+  if (!Json::parseFromStream(Json::CharReaderBuilder(), file, &log, &message) || !log.isObject()) {
+    return Error{ErrorKind::kIo, "is not the log of a run", path};
+  }
+  return log;
+}
+
+}  // namespace repose
