@@ -1,0 +1,329 @@
+// Repose: scenes that are wrong: each message stands at its exact place and says what would be right.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/scene/reader.h"
+
+namespace repose {
+namespace {
+
+constexpr const char* kGood = R"({
+  "repose": 1,
+  "name": "good",
+  "grid": {"spacing": 0.1},
+  "materials": {"sand": {"type": "drucker_prager"}},
+  "bodies": [
+    {"name": "heap", "material": "sand", "shape": {"type": "sphere", "radius": 1}}
+  ],
+  "colliders": [
+    {"name": "floor", "shape": {"type": "plane"}}
+  ]
+})";
+
+/// The good scene with one piece of it replaced.
+std::string with(const std::string& piece, const std::string& by) {
+  std::string text = kGood;
+  const std::size_t at = text.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  return text.replace(at, piece.size(), by);
+}
+
+std::string errors(const std::string& text, ReadOptions options = {}) {
+  const Result<Scene> scene = read_scene_text(text, "s.json", ".", options);
+  if (scene) return "";
+  EXPECT_EQ(scene.error().kind, ErrorKind::kBadScene);
+  return scene.error().text();
+}
+
+std::string override_errors(const std::string& override) {
+  return errors(kGood, {.overrides = {override}});
+}
+
+TEST(SceneErrors, GoodScene_None) {
+  EXPECT_EQ(errors(kGood), "");
+}
+
+TEST(SceneErrors, NoFile_NoInput) {
+  const Result<Scene> scene = read_scene("no/such/scene.json");
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().kind, ErrorKind::kNoInput);
+  EXPECT_EQ(scene.error().text(), "no/such/scene.json: no such file; give a scene file");
+}
+
+TEST(SceneErrors, Folder_NoInput) {
+  const Result<Scene> scene = read_scene(testing::TempDir());
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().kind, ErrorKind::kNoInput);
+}
+
+TEST(SceneErrors, Syntax_LineAndColumn) {
+  EXPECT_EQ(errors(with("1,", "1")), "s.json:3:3: not JSON: Missing ',' or '}' in object declaration");
+  EXPECT_EQ(errors(with("0.1}", "0.1,}")), "s.json:4:27: not JSON: Missing '}' or object member name");
+  EXPECT_EQ(errors(""), "s.json:1:1: not JSON: Syntax error: value, object or array expected.");
+  EXPECT_EQ(errors("[]"), "s.json:1:1: found a list; a scene is an object {...}");
+}
+
+TEST(SceneErrors, RepeatedKey_Refused) {
+  EXPECT_EQ(errors(with("\"spacing\": 0.1", "\"spacing\": 0.1, \"spacing\": 0.2")),
+            "s.json:4:28: not JSON: Duplicate key: 'spacing'");
+}
+
+TEST(SceneErrors, NotANumberOfJson_Refused) {
+  EXPECT_EQ(errors(with("0.1", "NaN")),
+            "s.json:4:23: not JSON: Syntax error: value, object or array expected.");
+  EXPECT_EQ(errors(with("0.1", "1e999")), "s.json:4:23: not JSON: '1e999' is not a number.");
+  EXPECT_EQ(errors(with("0.1", "-")), "s.json:4:23: \"-\" is not a number; write for example 0.5, -2 or 1e-3");
+  EXPECT_EQ(errors(with("0.1", "01")),
+            "s.json:4:23: \"01\" is not a number; write for example 0.5, -2 or 1e-3");
+}
+
+TEST(SceneErrors, TooDeep_Refused) {
+  EXPECT_EQ(errors("{\"a\":" + std::string(1000000, '[')),
+            "s.json:1:69: nested too deep; at most 64 levels are read");
+}
+
+TEST(SceneErrors, TooLarge_Refused) {
+  EXPECT_EQ(errors(std::string((std::size_t{16} << 20) + 1, ' ')),
+            "s.json: larger than 16 MB; put geometry into mesh files");
+}
+
+TEST(SceneErrors, MisspeltKey_NearestNamedAtTheKey) {
+  EXPECT_EQ(errors(with("\"name\": \"floor\",", "\"name\": \"floor\", \"fricton\": 1,")),
+            "s.json:10:23: colliders[0].fricton: unknown key; did you mean \"friction\"?");
+  EXPECT_EQ(errors(with("\"spacing\":", "/* m */ \"spacng\": /* \"m\": */")),
+            "s.json:4:20: grid.spacng: unknown key; did you mean \"spacing\"?");
+}
+
+TEST(SceneErrors, KeyOfAnotherType_SaysTheType) {
+  const std::string text = errors(with("\"radius\": 1", "\"radius\": 1, \"upper\": 2"));
+  EXPECT_TRUE(
+      text.starts_with("s.json:7:83: bodies[0].shape.upper: unknown key for type \"sphere\"; the nearest is"))
+      << text;
+}
+
+TEST(SceneErrors, ColumnsCountCharacters) {
+  EXPECT_EQ(errors(with("\"spacing\": 0.1", "/* \xC3\xA9\xC3\xA9 */ \"spacing\": 0")),
+            "s.json:4:32: grid.spacing: 0 is out of range; expected a number in m, greater than 0");
+}
+
+TEST(SceneErrors, WindowsLines_CountOnce) {
+  std::string text;
+  for (const char c : with("0.1", "0")) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(errors(text),
+            "s.json:4:23: grid.spacing: 0 is out of range; expected a number in m, greater than 0");
+}
+
+TEST(SceneErrors, WrongType_SaysFoundAndExpected) {
+  EXPECT_EQ(errors(with("0.1", "\"big\"")),
+            "s.json:4:23: grid.spacing: found text \"big\"; expected a number in m, greater than 0");
+  EXPECT_EQ(errors(with("0.1", "true")),
+            "s.json:4:23: grid.spacing: found true; expected a number in m, greater than 0");
+  EXPECT_EQ(errors(with("{\"spacing\": 0.1}", "[]")),
+            "s.json:4:11: grid: found a list; expected an object {...}");
+  EXPECT_EQ(errors(with("\"good\"", "12")), "s.json:3:11: name: found 12; expected text, such as \"sand\"");
+  EXPECT_EQ(
+      override_errors("bodies[0].velocity=[1, 2]"),
+      "--set bodies[0].velocity=[1, 2]: bodies[0].velocity: found a list of 2; expected a list of 3, each a "
+      "number in m/s");
+  EXPECT_EQ(
+      override_errors("time={\"frames\": 1.5}"),
+      "--set time={\"frames\": 1.5}: time.frames: found 1.5; expected a whole number, at least 1 and at most "
+      "1e+09");
+}
+
+TEST(SceneErrors, OutOfRange_SaysRangeAndUnit) {
+  EXPECT_EQ(
+      errors(with("\"drucker_prager\"", "\"drucker_prager\", \"density\": -5")),
+      "s.json:5:63: materials.sand.density: -5 is out of range; expected a number in kg/m^3, greater than 0");
+  EXPECT_EQ(errors(with("\"drucker_prager\"", "\"drucker_prager\", \"friction_angle\": 90")),
+            "s.json:5:70: materials.sand.friction_angle: 90 is out of range; expected a number in degrees, at "
+            "least 0 "
+            "and less than 90");
+  EXPECT_EQ(errors(with("1,", "2,")),
+            "s.json:2:13: repose: 2 is out of range; expected a whole number, exactly 1");
+  EXPECT_EQ(
+      override_errors("bodies[0].seed=99999999999999999999"),
+      "--set bodies[0].seed=99999999999999999999: bodies[0].seed: 1e+20 is out of range; expected a whole "
+      "number, at least 0");
+}
+
+TEST(SceneErrors, UnknownChoice_NamesAll) {
+  EXPECT_EQ(errors(with("\"name\": \"floor\"", "\"name\": \"floor\", \"contact\": \"stiky\"")),
+            "s.json:10:34: colliders[0].contact: found text \"stiky\"; expected one of \"sticky\", \"slip\", "
+            "\"separating\"; did you mean \"sticky\"?");
+  EXPECT_EQ(
+      errors(with("drucker_prager", "druker_prager")),
+      "s.json:5:34: materials.sand.type: found text \"druker_prager\"; expected one of \"drucker_prager\", "
+      "\"elastic\"; did you mean \"drucker_prager\"?");
+}
+
+TEST(SceneErrors, Missing_StandsAtTheObject) {
+  EXPECT_EQ(errors(with("\"spacing\": 0.1", "")),
+            "s.json:4:11: grid.spacing: missing; expected a number in m, greater than 0");
+  EXPECT_EQ(errors(with("\"type\": \"plane\"", "")).substr(0, 64),
+            "s.json:10:32: colliders[0].shape.type: missing; expected one of ");
+  EXPECT_EQ(errors(with("\"name\": \"good\",", "")).substr(0, 36), "s.json:1:1: name: missing; expected ");
+}
+
+TEST(SceneErrors, NoBody_Refused) {
+  EXPECT_EQ(override_errors("bodies=[]"),
+            "--set bodies=[]: bodies: found a list; expected a list of at least one object");
+}
+
+TEST(SceneErrors, UnknownMaterial_NearestNamed) {
+  EXPECT_EQ(errors(with("\"material\": \"sand\"", "\"material\": \"snad\"")),
+            "s.json:7:34: bodies[0].material: no material \"snad\"; did you mean \"sand\"?");
+}
+
+TEST(SceneErrors, NamesTwice_Refused) {
+  const std::string floor = "{\"name\": \"floor\", \"shape\": {\"type\": \"plane\"}}";
+  EXPECT_EQ(errors(with(floor, floor + ", " + floor)),
+            "s.json:10:61: colliders[1].name: \"floor\" is taken by another collider; choose another");
+}
+
+TEST(SceneErrors, NameThatIsNoFileName_Refused) {
+  for (const char* name : {"../up", "a/b", ".hidden", "-x", "a b"}) {
+    EXPECT_TRUE(errors(with("good", name)).starts_with("s.json:3:11: name: must do as the name of a file"))
+        << name;
+  }
+}
+
+TEST(SceneErrors, LatticeOffBlocks_Refused) {
+  const std::string spacing = "\"spacing\": 0.1";
+  EXPECT_EQ(errors(with(spacing, spacing + ", \"origin_cells\": [8, 4, 0]")),
+            "s.json:4:44: grid.origin_cells: must be multiples of 8, such as [0, -16, 800]");
+  EXPECT_EQ(errors(with(spacing, spacing + ", \"periodic\": {\"x\": {\"length\": 1.7}}")),
+            "s.json:4:57: grid.periodic.x.length: 1.7 must be a multiple of 8 spacings, 0.8 m; nearest is 1.6");
+  EXPECT_EQ(errors(with(spacing, spacing + ", \"periodic\": {\"y\": {\"length\": 1.6, \"lower\": 0.1}}")),
+            "s.json:4:71: grid.periodic.y.lower: 0.1 must be a multiple of 8 spacings, 0.8 m; nearest is 0");
+  EXPECT_EQ(errors(with(spacing, spacing + ", \"periodic\": {\"y\": {\"length\": 2.4, \"lower\": -0.8}}")), "");
+  EXPECT_EQ(
+      errors(with(spacing, spacing + ", \"plane_strain\": \"x\", \"periodic\": {\"x\": {\"length\": 0.8}}")),
+      "s.json:4:67: grid.periodic.x: this axis is flat (plane_strain) and cannot repeat");
+}
+
+TEST(SceneErrors, Expression_NearestNameAndPlace) {
+  EXPECT_EQ(errors(with("\"grid\": {\"spacing\": 0.1}",
+                        "\"parameters\": {\"radius\": 1}, \"grid\": {\"spacing\": \"=radus\"}")),
+            "s.json:4:52: grid.spacing: \"=radus\" unknown name \"radus\"; the nearest is \"radius\"");
+  EXPECT_EQ(errors(with("0.1", "\"=1/0\"")),
+            "s.json:4:23: grid.spacing: \"=1/0\" gives inf; expected a finite number");
+  EXPECT_EQ(errors(with("0.1", "\"=1,2\"")),
+            "s.json:4:23: grid.spacing: \"=1,2\" gives 2 numbers; write one, without commas");
+  EXPECT_EQ(errors(with("0.1", "\"= -1\"")),
+            "s.json:4:23: grid.spacing: -1 is out of range; expected a number in m, greater than 0");
+  for (const char* wrong :
+       {"=", "=sin(", "=2 3", "=a=3", "=\\\"x\\\"", "=((((", "=foo(1)", "=1e400", "=?:", "=\\u0000"}) {
+    const std::string text = errors(with("0.1", std::string("\"") + wrong + "\""));
+    EXPECT_TRUE(text.starts_with("s.json:4:23: grid.spacing: ")) << wrong << " gave " << text;
+  }
+}
+
+TEST(SceneErrors, Parameters_CirclesAndBadNames) {
+  const auto parameters = [](const std::string& members) {
+    return errors(with("\"grid\"", "\"parameters\": {" + members + "}, \"grid\""));
+  };
+  EXPECT_EQ(parameters("\"a\": \"=b\", \"b\": \"=a\""),
+            "s.json:4:23: parameters.a: is defined by itself, through other parameters\n"
+            "s.json:4:34: parameters.b: is defined by itself, through other parameters");
+  EXPECT_EQ(
+      parameters("\"a b\": 1"),
+      "s.json:4:25: parameters.a b: not a name for expressions; use letters, digits and _, a letter first");
+  EXPECT_EQ(parameters("\"sin\": 1"),
+            "s.json:4:25: parameters.sin: already means something in expressions; choose another name");
+  EXPECT_EQ(
+      parameters("\"a\": [1], \"b\": \"=a\""),
+      "s.json:4:23: parameters.a: found a list; expected a number, or an expression such as \"= 2 * pi\"");
+}
+
+TEST(SceneErrors, BrokenParameter_ReportedOnce) {
+  const std::string text =
+      with("\"grid\": {\"spacing\": 0.1}", "\"parameters\": {\"a\": true}, \"grid\": {\"spacing\": \"=a\"}");
+  EXPECT_EQ(errors(text),
+            "s.json:4:23: parameters.a: found true; expected a number, or an expression such as \"= 2 * pi\"");
+}
+
+TEST(SceneErrors, Override_PlaceIsTheOption) {
+  EXPECT_EQ(override_errors("grid.spacing=-1"),
+            "--set grid.spacing=-1: grid.spacing: -1 is out of range; expected a number in m, greater than 0");
+  EXPECT_EQ(override_errors("grid.spacng=1"),
+            "--set grid.spacng=1: grid.spacng: unknown key; did you mean \"spacing\"?");
+  EXPECT_EQ(
+      override_errors("output.ply=true"),
+      "--set output.ply=true: the scene has no \"output\"; the nearest is \"bodies\"; known are \"bodies\", "
+      "\"colliders\", \"grid\", \"materials\", \"name\", \"repose\"");
+  EXPECT_EQ(override_errors("colliders.flor.friction=1"),
+            "--set colliders.flor.friction=1: \"colliders\" has no \"flor\" among its 1 elements, which count "
+            "from 0; "
+            "did you mean \"floor\"?");
+  EXPECT_EQ(override_errors("name.x=1"), "--set name.x=1: \"name\" is text \"good\" and holds no \"x\"");
+  for (const char* wrong :
+       {"", "grid", "=1", ".a=1", "a..b=1", "bodies[0=1", "bodies]0[=1", "bodies[0]x=1", "a.=1"}) {
+    const std::string text = override_errors(wrong);
+    EXPECT_EQ(text, std::string("--set ") + wrong +
+                        ": not an override; expected key.path=value, such as bodies[0].seed=2");
+  }
+  EXPECT_EQ(override_errors("bodies[0].velocity[1]=2"),
+            "--set bodies[0].velocity[1]=2: \"bodies[0]\" has no \"velocity\"; the nearest is \"material\"; "
+            "known are "
+            "\"material\", \"name\", \"shape\"");
+  EXPECT_NE(override_errors("bodies[1].seed=1").find("\"bodies\" has no \"1\" among its 1 elements"),
+            std::string::npos);
+}
+
+TEST(SceneErrors, MeshOutsideTheFolder_RefusedUnlessAllowed) {
+  const auto mesh = [](const char* file) {
+    return with("\"sphere\", \"radius\": 1", "\"mesh\", \"file\": \"" + std::string(file) + "\"");
+  };
+  EXPECT_EQ(
+      errors(mesh("a/../../b.obj")),
+      "s.json:7:76: bodies[0].shape.file: text \"a/../../b.obj\" leads out of the scene's folder; name a file "
+      "within it");
+  EXPECT_NE(errors(mesh("/b.obj")), "");
+  EXPECT_EQ(errors(mesh("a/../b.obj")), "");
+  EXPECT_EQ(errors(mesh("../b.obj"), {.overrides = {}, .allow_outside_paths = true}), "");
+}
+
+TEST(SceneErrors, Several_AllInOrderOnePerLine) {
+  std::string text = with("\"spacing\": 0.1", "\"spacing\": 0, \"colour\": 1");
+  text.replace(text.find("\"radius\": 1"), 11, "\"radius\": -1");
+  const std::string all = errors(text, {.overrides = {"gravty={}"}});
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 3) << all;
+  const std::size_t first = all.find("s.json:4:23: grid.spacing: ");
+  const std::size_t second = all.find("\ns.json:4:26: grid.colour: ");
+  const std::size_t third = all.find("\ns.json:7:80: bodies[0].shape.radius: ");
+  const std::size_t last = all.find("\n--set gravty={}: gravty: unknown key; did you mean \"gravity\"?");
+  EXPECT_EQ(first, 0u);
+  EXPECT_LT(first, second);
+  EXPECT_LT(second, third);
+  EXPECT_LT(third, last);
+  EXPECT_NE(last, std::string::npos) << all;
+}
+
+TEST(SceneErrors, Many_TwentyShown) {
+  std::string members;
+  for (int i = 0; i < 30; ++i) members += ", \"line\\nbreak" + std::to_string(i) + "\": 0";
+  const std::string all = errors(with("\"spacing\": 0.1", "\"spacing\": 0.1" + members));
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 20);
+  EXPECT_TRUE(all.ends_with(": and 10 more, from here on")) << all;
+}
+
+/// Whatever the bytes, the reader answers: with a scene or with a place.
+TEST(SceneErrors, TruncatedAndMangled_NeverThrows) {
+  const std::string good = kGood;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    EXPECT_NE(errors(good.substr(0, i)), "") << i;
+    for (const char c : {'\0', '"', '\\', '/', '{', ']', '-', '\xFF'}) {
+      std::string mangled = good;
+      mangled[i] = c;
+      const std::string text = errors(mangled);
+      EXPECT_TRUE(text.empty() || text.starts_with("s.json:")) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace repose
