@@ -153,7 +153,7 @@ Result<double> CylinderShape::section_area(int axis) const {
 }
 
 TriangleMesh CylinderShape::surface(double) const {
-  constexpr int kSides = 64;
+  constexpr int kSides = 160;
   return revolve({{0, 0}, {radius_, 0}, {radius_, height_}, {0, height_}}, frame_, kSides);
 }
 

@@ -144,6 +144,7 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
   for (const auto& set : state_.sets) {
     // A sphere of half the particle's volume: grains that touch without hiding one another.
     const double radius = std::cbrt(3.0 / (4.0 * std::numbers::pi) * 0.5 * set.particle_volume);
+    const auto kind = static_cast<float>(scene_.materials[static_cast<std::size_t>(set.material)].type);
     for (std::size_t owner = 0; owner < owners.size(); ++owner) {
       const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(owners[owner])];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
@@ -156,7 +157,7 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
         }
         cloud.id[at] = set.id[p];
         cloud.radius[at] = static_cast<float>(radius);
-        material.values[at] = static_cast<float>(set.material);
+        material.values[at] = kind;
         if (!set.extra.empty()) {
           gained.values[at] = static_cast<float>(set.extra[0].values[p]);
           corrected = true;

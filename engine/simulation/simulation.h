@@ -56,7 +56,8 @@ class Simulation {
 
   virtual const Counters& counters() const = 0;
   virtual std::size_t particles() const = 0;
-  /// Positions, velocities, ids and radii of all particles, in id order; `channels` adds what effects keep.
+  /// Positions, velocities, ids and radii of all particles, in id order; where a scene has several materials, the
+  /// attribute "material" is each one's MaterialType; `channels` adds what effects keep.
   virtual PointCloud points(bool channels = false) const = 0;
   virtual Diagnostics diagnose() = 0;
   virtual std::uint64_t hash() const = 0;

@@ -60,26 +60,48 @@ void BlockOrder<Real>::group_by_destination(const ParticleSet<Real>& set, std::s
   }
 }
 
+/// Calls visit(first, last) for each stretch of grouped_ whose particles of set k come to a new owner.
 template <class Real>
-void BlockOrder<Real>::collect(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner,
-                               double shift, std::vector<Item>& items) {
-  const ParticleSet<Real>& set = state.sets[k];
+template <class Visit>
+void BlockOrder<Real>::for_each_arrival(const State<Real>& state, const BlockGrid& old, std::size_t k,
+                                        std::size_t owner, Visit visit) const {
   const Index3 block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
-  items.clear();
   for (int n = 0; n < kNeighbours; ++n) {
     const Index3 away = offset_of(n);
     const Index3 from = state.topology.wrap({block[0] - away[0], block[1] - away[1], block[2] - away[2]});
     const std::int32_t source = old.find_owner(from);
     if (source < 0) continue;
     const Departures& departures = departures_[k][static_cast<std::size_t>(source)];
-    const std::size_t first = set.begin[static_cast<std::size_t>(source)];
-    for (std::size_t i = departures[static_cast<std::size_t>(n)]; i < departures[static_cast<std::size_t>(n) + 1]; ++i) {
-      const std::uint32_t p = grouped_[first + i];
-      items.push_back({cell_in_block(set, p, shift), set.id[p], p});
-    }
+    const std::size_t base = state.sets[k].begin[static_cast<std::size_t>(source)];
+    visit(base + departures[static_cast<std::size_t>(n)], base + departures[static_cast<std::size_t>(n) + 1]);
   }
-  std::sort(items.begin(), items.end(),
-            [](const Item& a, const Item& b) { return a.cell != b.cell ? a.cell < b.cell : a.id < b.id; });
+}
+
+/// Writes the particles that come to an owner to `place`, by cell and then by id.
+template <class Real>
+void BlockOrder<Real>::sort_arrivals(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner,
+                                     double shift, std::uint32_t* place) {
+  const ParticleSet<Real>& set = state.sets[k];
+  auto& items = items_[static_cast<std::size_t>(Threads::index())];
+  items.clear();
+  std::array<std::uint32_t, kBlockNodes + 1> next{};
+  for_each_arrival(state, old, k, owner, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::uint32_t p = grouped_[i];
+      items.push_back({cell_in_block(set, p, shift), p});
+      ++next[items.back().cell + 1];
+    }
+  });
+  for (std::size_t cell = 0; cell < kBlockNodes; ++cell) next[cell + 1] += next[cell];
+  const auto begin = next;
+  for (const Item& item : items) place[next[item.cell]++] = item.index;
+  const auto by_id = [&set](std::uint32_t a, std::uint32_t b) { return set.id[a] < set.id[b]; };
+  for (std::size_t cell = 0; cell < kBlockNodes; ++cell) {
+    std::uint32_t* const first = place + begin[cell];
+    std::uint32_t* const last = place + begin[cell + 1];
+    // Most of a cell's particles were in this order before.
+    if (!std::is_sorted(first, last, by_id)) std::sort(first, last, by_id);
+  }
 }
 
 template <class Real>
@@ -145,17 +167,14 @@ void BlockOrder<Real>::order(State<Real>& state, Threads& threads, double shift)
     if (state.sets.size() > 1) grouped[k].swap(grouped_);
     std::vector<std::uint32_t> begin(new_owners + 1, 0);
     threads.for_each(new_owners, [&](std::size_t owner) {
-      auto& items = items_[static_cast<std::size_t>(Threads::index())];
-      collect(state, old, k, owner, shift, items);
-      begin[owner + 1] = static_cast<std::uint32_t>(items.size());
+      for_each_arrival(state, old, k, owner, [&](std::size_t first, std::size_t last) {
+        begin[owner + 1] += static_cast<std::uint32_t>(last - first);
+      });
     });
     for (std::size_t owner = 0; owner < new_owners; ++owner) begin[owner + 1] += begin[owner];
     permutation_.resize(state.sets[k].count);
     threads.for_each(new_owners, [&](std::size_t owner) {
-      auto& items = items_[static_cast<std::size_t>(Threads::index())];
-      collect(state, old, k, owner, shift, items);
-      std::uint32_t* to = permutation_.data() + begin[owner];
-      for (const Item& item : items) *to++ = item.index;
+      sort_arrivals(state, old, k, owner, shift, permutation_.data() + begin[owner]);
     });
     REPOSE_ASSERT(begin[new_owners] == state.sets[k].count);
     permute(state.sets[k], threads, shift);

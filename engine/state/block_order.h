@@ -28,14 +28,17 @@ class BlockOrder {
 
  private:
   struct Item {
-    std::uint32_t cell, id, index;
+    std::uint32_t cell, index;
   };
   /// Where the particles of one old block go, per set: offsets of the 27 groups in its range.
   using Departures = std::array<std::uint32_t, kNeighbours + 1>;
 
   void group_by_destination(const ParticleSet<Real>& set, std::size_t owner, double shift, Departures& departures);
-  void collect(const State<Real>& state, const BlockGrid& old, std::size_t set, std::size_t owner, double shift,
-               std::vector<Item>& items);
+  template <class Visit>
+  void for_each_arrival(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner,
+                        Visit visit) const;
+  void sort_arrivals(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner, double shift,
+                     std::uint32_t* place);
   void permute(ParticleSet<Real>& set, Threads& threads, double shift);
 
   std::vector<std::vector<Departures>> departures_;  // per set, per old owner
