@@ -6,6 +6,8 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 
+#include <limits>
+
 #include "kernels/base/small_matrix.h"
 #include "kernels/pass/tables.h"
 
@@ -57,7 +59,9 @@ std::size_t inspect(const T* const velocity[3], const T* const affine[9], std::s
     for (int k = 0; k < 9; ++k) {
       map.m[k / 3][k % 3] = step * P::load_first(affine[k] + first, lanes) + (k % 4 == 0 ? one : zero);
     }
-    auto good = determinant(map) > zero;  // false for a NaN
+    // False for a NaN; an infinite entry makes the determinant a NaN or infinite.
+    const P volume_ratio = determinant(map);
+    auto good = (volume_ratio > zero) & (volume_ratio <= P(std::numeric_limits<T>::max()));
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
       good = good & (abs(P::load_first(velocity[axis] + first, lanes)) <= most);

@@ -1,0 +1,178 @@
+// Repose tests: one material run in every way that exists: the scalar templates, and the kernels of each
+// instruction set through their table. Strains come in batches, so that full registers and a remainder are both
+// met; what lies beyond a batch is checked to stay untouched.
+#pragma once
+
+#include "kernels/base/targets.h"
+
+#include "hwy/highway.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "kernels/material/materials.h"
+#include "tests/kernels/exact_matrix.h"
+
+namespace repose {
+
+using HWY_NAMESPACE::DruckerPrager;
+using HWY_NAMESPACE::HenckyElastic;
+using HWY_NAMESPACE::Materials;
+
+template <class Real>
+using Gradient = std::array<Real, 9>;
+
+/// Position of a material in the list, which is that in the kernel tables.
+template <class Material, std::size_t k = 0>
+constexpr std::size_t material_index() {
+  if constexpr (std::is_same_v<Material, std::tuple_element_t<k, Materials>>) {
+    return k;
+  } else {
+    return material_index<Material, k + 1>();
+  }
+}
+
+template <class Material, class Real>
+class MaterialProbe {
+ public:
+  using Constants = typename Material::template Constants<Real>;
+  using Strains = std::vector<Symmetric<Real>>;
+
+  /// Without a target, the scalar templates.
+  MaterialProbe(const Constants& constants, std::optional<Target> target)
+      : constants_(constants), target_(target) {}
+
+  const char* name() const { return target_ ? target_name(*target_) : "scalar"; }
+
+  Strains trial(const Strains& strains, const std::vector<Gradient<Real>>& gradients, Real dt) const {
+    if (target_) return through_kernel(kernel().trial, strains, gradients, dt, false);
+    Strains out = strains;
+    for (std::size_t p = 0; p < out.size(); ++p) {
+      HWY_NAMESPACE::Mat3<Real> step;
+      for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * gradients[p][k];
+      out[p] = packed(HWY_NAMESPACE::hencky_trial(unpacked(strains[p]), step));
+    }
+    return out;
+  }
+
+  /// Of an elastic material, the strains themselves.
+  Strains project(const Strains& strains) const {
+    Strains out = strains;
+    if constexpr (Material::kPlastic) {
+      if (target_) return through_kernel(kernel().project, strains, {}, 0, false);
+      for (auto& strain : out) strain = packed(Material::project(constants_, unpacked(strain)));
+    }
+    return out;
+  }
+
+  Strains stress(const Strains& strains) const {
+    if (target_) return through_kernel(kernel().stress, strains, {}, 0, true);
+    Strains out = strains;
+    for (auto& strain : out) strain = packed(Material::stress(constants_, unpacked(strain)));
+    return out;
+  }
+
+ private:
+  using Pass = void (*)(const MaterialInput<Real>&);
+
+  const MaterialKernels<Real>& kernel() const {
+    return kernels<Real>(*target_).material[material_index<Material>()];
+  }
+
+  static HWY_NAMESPACE::Sym3<Real> unpacked(const Symmetric<Real>& a) {
+    return {a[0], a[1], a[2], a[3], a[4], a[5]};
+  }
+  static Symmetric<Real> packed(const HWY_NAMESPACE::Sym3<Real>& a) {
+    return {a.xx, a.xy, a.xz, a.yy, a.yz, a.zz};
+  }
+
+  Strains through_kernel(Pass pass, const Strains& strains, const std::vector<Gradient<Real>>& gradients,
+                         Real dt, bool want_stress) const {
+    const std::size_t count = strains.size();
+    std::vector<Real> strain[6], stress[6], affine[9];
+    MaterialInput<Real> in{&constants_, {}, {}, {}, dt, count};
+    for (int k = 0; k < 6; ++k) {
+      for (const auto& s : strains) strain[k].push_back(s[k]);
+      strain[k].push_back(kCanary<Real>);
+      stress[k].assign(count + 1, kCanary<Real>);
+      in.strain[k] = strain[k].data();
+      in.stress[k] = stress[k].data();
+    }
+    for (int k = 0; k < 9; ++k) {
+      for (const auto& g : gradients) affine[k].push_back(g[k]);
+      in.affine[k] = affine[k].data();
+    }
+    pass(in);
+    Strains out(count);
+    for (int k = 0; k < 6; ++k) {
+      EXPECT_EQ(strain[k][count], kCanary<Real>) << name() << " writes beyond the strains";
+      EXPECT_EQ(stress[k][count], kCanary<Real>) << name() << " writes beyond the stresses";
+      for (std::size_t p = 0; p < count; ++p) out[p][k] = (want_stress ? stress : strain)[k][p];
+    }
+    return out;
+  }
+
+  Constants constants_;
+  std::optional<Target> target_;
+};
+
+/// The scalar templates and every instruction set of this machine.
+template <class Material, class Real, class Parameters>
+std::vector<MaterialProbe<Material, Real>> probes(const Parameters& parameters) {
+  const typename Material::template Constants<Real> constants(parameters);
+  std::vector<MaterialProbe<Material, Real>> all{{constants, std::nullopt}};
+  for (const Target target : supported_targets()) all.emplace_back(constants, target);
+  return all;
+}
+
+/// Turns into a default-made value of whatever parameters a material's constants are made from.
+template <class Constants>
+struct DefaultParameters {
+  template <class Parameters>
+  requires(!std::is_same_v<Parameters, Constants>) operator const Parameters&() const {
+    static const Parameters parameters{};
+    return parameters;
+  }
+};
+
+template <class Material, class Real>
+auto default_probes() {
+  return probes<Material, Real>(DefaultParameters<typename Material::template Constants<Real>>{});
+}
+
+/// The sand of the golden values: E = 3.537e5, nu = 0.3, phi = 30 degrees.
+inline DruckerPragerParameters golden_sand() {
+  DruckerPragerParameters sand;
+  sand.friction_angle = 30.0;
+  return sand;
+}
+
+/// Random strains whose stretches lie in 10^[-decades, decades], turned at random.
+template <class Real>
+std::vector<Symmetric<Real>> random_strains(std::size_t count, double decades, std::uint64_t seed) {
+  Samples samples(seed);
+  std::vector<Symmetric<Real>> strains(count);
+  for (auto& strain : strains) {
+    ExactVector values;
+    for (int i = 0; i < 3; ++i) values[i] = std::numbers::ln10 * samples.uniform(-decades, decades);
+    strain = rounded<Real>(turned(values, samples));
+  }
+  return strains;
+}
+
+/// The same with every size down to `least`, in steps of a decade, so that all cases of a return map are met.
+template <class Real>
+std::vector<Symmetric<Real>> strains_of_all_sizes(std::size_t count, double least, std::uint64_t seed) {
+  Samples samples(seed);
+  std::vector<Symmetric<Real>> strains(count);
+  for (auto& strain : strains) {
+    const long double scale = samples.power_of_ten(std::log10(least), 0);
+    const ExactVector values(samples.uniform(-1, 1), samples.uniform(-1, 1), samples.uniform(-1, 1));
+    strain =
+        rounded<Real>(scale * (turned(values, samples) - samples.uniform(-1, 1) * ExactMatrix::Identity()));
+  }
+  return strains;
+}
+
+}  // namespace repose
