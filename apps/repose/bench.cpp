@@ -4,9 +4,10 @@
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
+#include <optional>
 
 #include "apps/repose/command.h"
+#include "engine/io/atomic_file.h"
 
 namespace repose {
 namespace {
@@ -66,6 +67,13 @@ int bench_command(const BenchArguments& arguments) {
   if (!scene) return fail(scene.error());
   auto options = simulation_options(arguments.scene);
   if (!options) return fail(options.error());
+  // Before the work, so that a wrong path does not cost it.
+  std::optional<AtomicFile> file;
+  if (!arguments.json.empty()) {
+    auto created = AtomicFile::create(arguments.json);
+    if (!created) return fail(created.error());
+    file.emplace(std::move(*created));
+  }
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
   (*simulation)->reset_profile();
@@ -76,10 +84,10 @@ int bench_command(const BenchArguments& arguments) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Json::Value json = figures(**simulation, arguments.steps, seconds);
   print(json);
-  if (arguments.json.empty()) return 0;
-  std::ofstream file(arguments.json);
-  file << json.toStyledString();
-  if (!file.flush()) return fail({ErrorKind::kCannotCreate, "cannot be written", arguments.json});
+  if (!file) return 0;
+  const std::string text = json.toStyledString();
+  if (auto written = file->write(text.data(), text.size()); !written) return fail(written.error());
+  if (auto written = file->commit(); !written) return fail(written.error());
   return 0;
 }
 

@@ -50,7 +50,7 @@ int print_run(const std::string& folder) {
   std::printf("%s: run of %s by Repose %s, %s, %d threads: %s\n", folder.c_str(), (*log)["scene"]["name"].asCString(),
               (*log)["repose"].asCString(), (*log)["target"].asCString(), (*log)["threads"].asInt(),
               (*log)["end"].asCString());
-  std::printf("  frames  %u, %lld steps, %.1f s of simulation\n", frames.size(), static_cast<long long>(steps), seconds);
+  std::printf("  frames  %u, %lld steps, %.1f s of computing\n", frames.size(), static_cast<long long>(steps), seconds);
   if (!frames.empty()) {
     const Json::Value& last = frames[frames.size() - 1];
     std::printf("  last    t %.4f s, %llu particles, %.6g kg, hash %s\n", last["time"].asDouble(),
@@ -76,6 +76,7 @@ int print_checkpoint(const std::string& path) {
 }
 
 int print_file(const std::string& path) {
+  if (!std::filesystem::exists(path)) return fail({ErrorKind::kNoInput, "no such file or folder", path});
   if (std::filesystem::is_directory(path)) return print_run(path);
   const std::string extension = std::filesystem::path(path).extension();
   if (extension == ".checkpoint") return print_checkpoint(path);

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "apps/repose/command.h"
@@ -11,12 +12,24 @@ namespace {
 
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (JSON)")->required();
-  command.add_option("--set", arguments.set, "override a key: a.b=value; may be given again");
+  // One word each: `--set a=1 scene.json` must not take the scene for a second override.
+  command.add_option("--set", arguments.set, "override a key: a.b=value; may be given again")->allow_extra_args(false);
   command.add_flag("--allow-outside-paths", arguments.allow_outside_paths,
                    "allow meshes outside the scene's folder");
   command.add_option("--threads", arguments.threads, "threads (default: all)")->check(CLI::Range(1, 1024));
   command.add_option("--target", arguments.target, "instruction set: avx512, avx2, baseline (default: the best)")
       ->envname("REPOSE_TARGET");
+}
+
+/// One message for whatever is wrong with the words, in the form of all others.
+std::string word_failure(const CLI::App* app, const CLI::Error& error) {
+  const std::vector<std::string> unknown = app->remaining();
+  const bool no_command = app->get_subcommands().empty();
+  std::string text = no_command ? "name a command" : error.what();
+  if (no_command && !unknown.empty()) text = "'" + unknown.front() + "' is no command";
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return "repose: error: " + text + "; see repose " +
+         (no_command ? "" : app->get_subcommands().front()->get_name() + " ") + "--help\n";
 }
 
 /// Lets the engine's arenas have the threads that were asked for, even beyond the cores.
@@ -33,6 +46,7 @@ class Workers {
 int main(int count, char** words) {
   CLI::App app{"Repose: sand by the Material Point Method", "repose"};
   app.require_subcommand(1);
+  app.failure_message(word_failure);
   app.set_version_flag("--version", REPOSE_VERSION);
   int code = 0;
 
@@ -62,7 +76,7 @@ int main(int count, char** words) {
   BenchArguments bench;
   CLI::App& bench_app = *app.add_subcommand("bench", "time per phase, particle and step; hash of the end state");
   add_scene_options(bench_app, bench.scene);
-  bench_app.add_option("--steps", bench.steps, "steps (default 100)")->check(CLI::PositiveNumber);
+  bench_app.add_option("--steps", bench.steps, "steps (default 100)")->check(CLI::Range(1, 1000000000));
   bench_app.add_option("--json", bench.json, "write the figures to a file");
   bench_app.callback([&] {
     const Workers workers(bench.scene.threads);
@@ -80,8 +94,8 @@ int main(int count, char** words) {
   movie_app.add_option("--out", movie.out, "film (default: FOLDER/NAME.mp4)");
   movie_app.add_option("--width", movie.width, "pixels (default 1280)")->check(CLI::Range(16, 8192));
   movie_app.add_option("--height", movie.height, "pixels (default 720)")->check(CLI::Range(16, 8192));
-  movie_app.add_option("--first", movie.first, "first frame (default 1)")->check(CLI::PositiveNumber);
-  movie_app.add_option("--last", movie.last, "last frame (default: all)")->check(CLI::PositiveNumber);
+  movie_app.add_option("--first", movie.first, "first frame (default 1)")->check(CLI::Range(1, 1000000000));
+  movie_app.add_option("--last", movie.last, "last frame (default: all)")->check(CLI::Range(1, 1000000000));
   movie_app.add_flag("--pictures", movie.pictures, "keep a PNG of each frame beside its cache");
   movie_app.callback([&] { code = movie_command(movie); });
 

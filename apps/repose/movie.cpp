@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "apps/repose/command.h"
@@ -18,21 +19,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The cached frames of a run, oldest first.
-std::vector<std::string> cached_frames(const std::string& folder, const std::string& name) {
+/// The caches of the frames from `first` to `last` that the log names: the folder may hold later ones of an earlier
+/// run, and none of frames that nobody asked to write.
+std::vector<std::string> cached_frames(const std::string& folder, const Json::Value& log, std::int64_t first,
+                                       std::int64_t last) {
   std::vector<std::string> files;
-  std::error_code failure;
-  for (const auto& entry : fs::directory_iterator(folder, failure)) {
-    const std::string file = entry.path().filename().string();
-    if (file.starts_with(name + ".points.") && (file.ends_with(".vdb") || file.ends_with(".ply"))) {
-      files.push_back(entry.path().string());
+  for (const Json::Value& row : log["frames"]) {
+    const std::int64_t frame = row["frame"].asInt64();
+    if (frame < first || frame > last) continue;
+    char digits[24];
+    std::snprintf(digits, sizeof digits, "%04lld", static_cast<long long>(frame));
+    const std::string stem = folder + "/" + log["scene"]["name"].asString() + ".points." + digits;
+    for (const char* extension : {".vdb", ".ply"}) {
+      if (!fs::exists(stem + extension)) continue;
+      files.push_back(stem + extension);
+      break;
     }
   }
-  std::sort(files.begin(), files.end());
-  // One file per frame where a run wrote both formats.
-  const auto stem = [](const std::string& file) { return fs::path(file).replace_extension().string(); };
-  files.erase(std::unique(files.begin(), files.end(),
-                          [&](const auto& a, const auto& b) { return stem(a) == stem(b); }), files.end());
   return files;
 }
 
@@ -118,6 +121,11 @@ struct Shoot {
 
 /// What is to be filmed, from the folder of a run.
 Result<Shoot> prepare(const MovieArguments& arguments) {
+  const int last = arguments.last > 0 ? arguments.last : std::numeric_limits<int>::max();
+  if (last < arguments.first) {
+    return Error{ErrorKind::kUsage, "comes before --first " + std::to_string(arguments.first),
+                 "--last " + std::to_string(last)};
+  }
   auto log = read_run_log(arguments.folder);
   if (!log) return log.error();
   std::ifstream file(arguments.folder + "/scene.json");
@@ -130,12 +138,7 @@ Result<Shoot> prepare(const MovieArguments& arguments) {
   if (!scene) return scene.error();
   auto solids = build_solids(*scene, true);
   if (!solids) return solids.error();
-  Shoot shoot{std::move(*scene), std::move(*solids), {}};
-  const auto frames = cached_frames(arguments.folder, shoot.scene.name);
-  const std::size_t last = arguments.last > 0 ? static_cast<std::size_t>(arguments.last) : frames.size();
-  for (std::size_t k = static_cast<std::size_t>(arguments.first) - 1; k < std::min(last, frames.size()); ++k) {
-    shoot.frames.push_back(frames[k]);
-  }
+  Shoot shoot{std::move(*scene), std::move(*solids), cached_frames(arguments.folder, *log, arguments.first, last)};
   if (shoot.frames.empty()) {
     return Error{ErrorKind::kNoInput, "holds no points for these frames; was the run made with output.vdb or output.ply?",
                  arguments.folder};

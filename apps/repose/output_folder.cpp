@@ -60,11 +60,12 @@ std::vector<std::int64_t> OutputFolder::checkpoints() const {
   return frames;
 }
 
-void OutputFolder::prune_checkpoints() const {
-  const auto frames = checkpoints();
-  for (std::size_t k = 2; k < frames.size(); ++k) {
-    std::error_code ignored;  // an old checkpoint that stays does no harm
-    fs::remove(checkpoint(frames[k]), ignored);
+void OutputFolder::prune_checkpoints(std::int64_t frame) const {
+  int kept = 0;
+  for (const std::int64_t candidate : checkpoints()) {
+    if (candidate <= frame && kept++ < 2) continue;
+    std::error_code ignored;  // it will be tried again after the next frame
+    fs::remove(checkpoint(candidate), ignored);
   }
 }
 

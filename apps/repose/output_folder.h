@@ -25,8 +25,9 @@ class OutputFolder {
 
   /// Frames that have a checkpoint, newest first.
   std::vector<std::int64_t> checkpoints() const;
-  /// Removes all checkpoints but the newest two.
-  void prune_checkpoints() const;
+  /// Removes all checkpoints but the newest two up to `frame`, the last that this run has: later ones are of an
+  /// earlier run in the same folder, and a resume must not go on from there.
+  void prune_checkpoints(std::int64_t frame) const;
 
  private:
   OutputFolder(std::string folder, std::string name, int lock);

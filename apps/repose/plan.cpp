@@ -9,7 +9,7 @@
 namespace repose {
 namespace {
 
-/// ns per particle and step on one core with AVX-512, from docs/benchmarks.md; the forecast says "about".
+/// ns per particle and step on one core with AVX-512; the forecast says "about".
 constexpr double kNanoseconds = 40.0;
 
 std::string join(const std::vector<std::string>& words) {

@@ -22,8 +22,11 @@ std::string clock_text(double seconds) {
 Progress::Progress(std::string label, double total, bool wanted)
     : label_(std::move(label)), total_(total), visible_(wanted && isatty(STDERR_FILENO) != 0) {}
 
-Progress::~Progress() {
+Progress::~Progress() { leave(); }
+
+void Progress::leave() {
   if (visible_ && drawn_ != Clock::time_point{}) std::fputc('\n', stderr);
+  drawn_ = {};
 }
 
 void Progress::update(double done, const std::string& detail) {
@@ -36,9 +39,9 @@ void Progress::update(double done, const std::string& detail) {
 
 void Progress::finish(const std::string& detail) {
   if (!visible_) return;
+  drawn_ = Clock::now();
   draw(total_, detail);
-  std::fputc('\n', stderr);
-  drawn_ = {};
+  leave();
 }
 
 void Progress::draw(double done, const std::string& detail) {

@@ -16,8 +16,10 @@ class Progress {
 
   /// Redraws at most ten times a second: bar, share done, time left, then `detail`.
   void update(double done, const std::string& detail);
-  /// Leaves the line as it is and goes to the next.
+  /// Draws the line full, with `detail`, and leaves it.
   void finish(const std::string& detail);
+  /// Leaves the line as it is: what is printed next starts a line of its own.
+  void leave();
   bool visible() const { return visible_; }
 
  private:

@@ -63,12 +63,13 @@ class Run {
 
  private:
   Result<void> resume();
+  void list_series();
   Result<FrameReport> advance(Progress& progress);
   Result<void> write_frame(const FrameReport& frame);
   Result<void> write_caches(std::int64_t frame);
   Result<void> write_bundle(const Error& error);
   int interrupted();
-  int stop(const Error& error);
+  int stop(Error error);
   void tell(const FrameReport& frame, const Json::Value& row) const;
 
   const RunArguments& arguments_;
@@ -87,13 +88,24 @@ Result<void> Run::resume() {
     auto loaded = simulation_->load(path);
     if (loaded) {
       log_.continue_from(folder_.log(), simulation_->counters().frame);
-      if (!arguments_.json) std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
+      list_series();
+      if (!arguments_.json && !arguments_.quiet) std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
       return {};
     }
     if (loaded.error().kind != ErrorKind::kIo) return loaded;
     std::fprintf(stderr, "repose: warning: %s\n", loaded.error().text().c_str());
   }
   return Error{ErrorKind::kNoInput, "holds no checkpoint to resume from; run without --resume", folder_.path()};
+}
+
+/// The series names the frames of the whole run, so also those from before it was resumed.
+void Run::list_series() {
+  for (const Json::Value& row : log_.frames()) {
+    const std::string path = folder_.frame("points", row["frame"].asInt64(), "vtp");
+    if (!scene_.output.vtp || !std::filesystem::exists(path)) continue;
+    vtp_.push_back(path);
+    vtp_times_.push_back(row["time"].asDouble());
+  }
 }
 
 Result<FrameReport> Run::advance(Progress& progress) {
@@ -145,7 +157,7 @@ Result<void> Run::write_frame(const FrameReport& frame) {
   if (auto written = log_.write(folder_.log()); !written) return written;
   if (!scene_.output.checkpoint) return {};
   if (auto saved = simulation_->save(folder_.checkpoint(frame.frame)); !saved) return saved;
-  folder_.prune_checkpoints();
+  folder_.prune_checkpoints(frame.frame);
   return {};
 }
 
@@ -189,18 +201,21 @@ Result<void> Run::write_bundle(const Error& error) {
 
 int Run::interrupted() {
   const int signal = g_signal;
+  const std::int64_t frame = simulation_->counters().frame;
   log_.end("interrupted");
-  if (auto saved = simulation_->save(folder_.checkpoint(simulation_->counters().frame)); !saved) return fail(saved.error());
+  if (auto saved = simulation_->save(folder_.checkpoint(frame)); !saved) return fail(saved.error());
+  folder_.prune_checkpoints(frame);
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
-  std::fprintf(stderr, "\nrepose: interrupted; state saved, go on with: repose run --resume\n");
+  std::fprintf(stderr, "repose: interrupted; state saved in %s, the same command with --resume goes on\n",
+               folder_.path().c_str());
   return 128 + signal;
 }
 
-int Run::stop(const Error& error) {
+int Run::stop(Error error) {
   log_.end(error.text());
   if (error.kind == ErrorKind::kPhysics) {
     if (auto written = write_bundle(error); !written) fail(written.error());
-    else std::fprintf(stderr, "repose: what led to it is in %s/diagnostics\n", folder_.path().c_str());
+    else error.message += "; what led to it is in " + folder_.path() + "/diagnostics";
   }
   if (auto written = log_.write(folder_.log()); !written) fail(written.error());
   return fail(error);
@@ -215,10 +230,15 @@ int Run::go() {
   std::signal(SIGTERM, on_signal);
   Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);
   while (simulation_->counters().frame < frames_.last) {
+    const std::int64_t before = simulation_->counters().frame;
     auto frame = advance(progress);
+    if (!frame || g_signal != 0) progress.leave();
     if (!frame) return stop(frame.error());
-    if (g_signal != 0) return interrupted();
-    if (auto written = write_frame(*frame); !written) return stop(written.error());
+    // A signal can come in the last step of a frame: the frame is then whole, and nobody else will write it.
+    if (frame->frame > before) {
+      if (auto written = write_frame(*frame); !written) return stop(written.error());
+    }
+    if (g_signal != 0 && simulation_->counters().frame < frames_.last) return interrupted();
   }
   log_.end("complete");
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());

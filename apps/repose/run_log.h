@@ -22,6 +22,9 @@ class RunLog {
   /// Adds a frame and returns its row.
   const Json::Value& add(const FrameReport& frame, Simulation& simulation);
 
+  /// The rows so far.
+  const Json::Value& frames() const { return log_["frames"]; }
+
   /// Why the run ended: "complete", "interrupted", or the message of an error.
   void end(const std::string& how) { log_["end"] = how; }
 

@@ -65,7 +65,9 @@ class ChunkReader {
   Result<void> read(const std::string& name, void* data, std::size_t bytes) {
     ChunkHead head;
     file_.read(reinterpret_cast<char*>(&head), sizeof head);
-    const bool named = file_ && name == std::string(head.name, strnlen(head.name, sizeof head.name));
+    ChunkHead expected;
+    std::strncpy(expected.name, name.c_str(), sizeof expected.name - 1);
+    const bool named = file_ && std::memcmp(head.name, expected.name, sizeof head.name) == 0;
     if (!named || head.bytes != bytes) return damaged(name, "is missing or has another size");
     file_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes));
     if (!file_) return damaged(name, "is cut short");

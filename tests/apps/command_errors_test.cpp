@@ -1,0 +1,163 @@
+// Repose tests: what can be wrong with a command, each with its exit code and one message that says what would
+// be right.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "tests/apps/command_probe.h"
+
+namespace repose {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using CommandErrors = CommandTest;
+
+TEST_F(CommandErrors, MisspeltKey_NamesPlaceAndNearest) {
+  const std::string scene = write("bad.json",
+                                  "{\n  \"repose\": 1, \"name\": \"bad\",\n  \"grid\": {\"spacng\": 0.1, "
+                                  "\"spacing\": 0.1},\n  \"materials\": {\"s\": {\"type\": \"elastic\"}},\n"
+                                  "  \"bodies\": [{\"name\": \"b\", \"material\": \"s\", \"shape\": "
+                                  "{\"type\": \"sphere\", \"radius\": 1}}]\n}\n");
+  EXPECT_EQ(refusal(65, {"run", scene, "--out", path("out")}),
+            "repose: error: " + scene + ":3:12: grid.spacng: unknown key; did you mean \"spacing\"?\n");
+}
+
+TEST_F(CommandErrors, WrongType_SaysWhatIsExpected) {
+  const std::string message = refused_override(65, "grid.spacing=\"fine\"");
+  EXPECT_THAT(message, HasSubstr("grid.spacing: found text \"fine\"; expected a number in m, greater than 0"));
+}
+
+TEST_F(CommandErrors, NegativeDensity_SaysRange) {
+  const std::string message = refused_override(65, "materials.sand.density=-1");
+  EXPECT_THAT(message, HasSubstr("materials.sand.density: -1 is out of range; expected a number in kg/m^3"));
+}
+
+TEST_F(CommandErrors, OverrideOfUnknownKey_NamesNearest) {
+  EXPECT_THAT(refused_override(65, "grid.spacng=1"), HasSubstr("did you mean \"spacing\"?"));
+}
+
+TEST_F(CommandErrors, MissingMesh_NoInput) {
+  const std::string message = refused_override(66, R"(bodies.box.shape={"type": "mesh", "file": "none.obj"})");
+  EXPECT_THAT(message, HasSubstr("bodies.box.shape"));
+  EXPECT_THAT(message, HasSubstr("none.obj"));
+}
+
+TEST_F(CommandErrors, OpenMesh_SaysWhere) {
+  // A tetrahedron without its fourth face.
+  write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const std::string message = refused_override(65, R"(bodies.box.shape={"type": "mesh", "file": "open.obj"})");
+  EXPECT_THAT(message, HasSubstr("bodies.box.shape"));
+  EXPECT_THAT(message, HasSubstr("open.obj"));
+  EXPECT_THAT(message, HasSubstr("(1.000000, 0.000000, 0.000000)")) << "an end of an open edge";
+}
+
+TEST_F(CommandErrors, MeshOutsideTheFolder_IsRefusedUnlessAllowed) {
+  const std::string message =
+      refused_override(65, R"(bodies.box.shape={"type": "mesh", "file": "../none.obj"})");
+  EXPECT_THAT(message, HasSubstr("none.obj"));
+  refusal(66, {"run", tiny_scene(), "--out", path("out"), "--allow-outside-paths", "--set",
+               R"(bodies.box.shape={"type": "mesh", "file": "../repose_none.obj"})"});
+}
+
+TEST_F(CommandErrors, NoParticle_NamesTheBody) {
+  EXPECT_THAT(refused_override(65, "grid.spacing=10"), HasSubstr("bodies.box: the shape holds no particle"));
+}
+
+TEST_F(CommandErrors, NoScene_NoInput) {
+  EXPECT_EQ(refusal(66, {"run", path("none.json")}),
+            "repose: error: " + path("none.json") + ": no such file; give a scene file\n");
+}
+
+TEST_F(CommandErrors, MoreMemoryThanThereIs_NamesASpacingThatFits) {
+  const std::string message = refused_override(78, "grid.spacing=1e-6");
+  EXPECT_THAT(message, HasSubstr("grid.spacing"));
+  EXPECT_THAT(message, EndsWith(" m or more fits\n"));
+}
+
+TEST_F(CommandErrors, FolderThatCannotBe_NamesIt) {
+  // Below a file: no right of any user makes this writable, so the test also holds for root.
+  const std::string scene = tiny_scene();
+  EXPECT_THAT(refusal(73, {"run", scene, "--out", scene + "/out"}), HasSubstr(scene + "/out: cannot be made"));
+}
+
+TEST_F(CommandErrors, FolderInUse_NamesIt) {
+  const std::string scene = tiny_scene();
+  std::filesystem::create_directories(path("out"));
+  const int lock = open(path("out/.lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  ASSERT_EQ(flock(lock, LOCK_EX | LOCK_NB), 0);
+  EXPECT_THAT(refusal(75, {"run", scene, "--out", path("out")}), HasSubstr(path("out") + ": another run"));
+  close(lock);
+  EXPECT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "1"}).code, 0);
+}
+
+TEST_F(CommandErrors, ResumeOfNothing_NoInput) {
+  EXPECT_THAT(refusal(66, {"run", tiny_scene(), "--out", path("out"), "--resume"}), HasSubstr("no checkpoint"));
+}
+
+TEST_F(CommandErrors, ResumeOfAnotherScene_NamesBoth) {
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--frames", "1"}).code, 0);
+  EXPECT_THAT(
+      refusal(65, {"run", tiny_scene(), "--out", path("out"), "--resume", "--set", "bodies.box.seed=7"}),
+      HasSubstr("belongs to another scene"));
+}
+
+TEST_F(CommandErrors, UnknownWords_AreUsage) {
+  const std::string scene = tiny_scene();
+  EXPECT_THAT(refusal(64, {}), HasSubstr("name a command"));
+  EXPECT_THAT(refusal(64, {"sculpt"}), HasSubstr("'sculpt' is no command"));
+  EXPECT_THAT(refusal(64, {"run", scene, "--bogus"}), HasSubstr("--bogus"));
+  EXPECT_THAT(refusal(64, {"run"}), HasSubstr("scene"));
+  EXPECT_THAT(refusal(64, {"run", scene, "--target", "sse2"}), HasSubstr("'sse2' is not one of avx512, avx2"));
+  EXPECT_THAT(refusal(64, {"run", scene, "--threads", "0"}), HasSubstr("--threads"));
+  EXPECT_THAT(refusal(64, {"bench", scene, "--steps", "0"}), HasSubstr("--steps"));
+}
+
+TEST_F(CommandErrors, FramesThatAreNoRange_AreUsage) {
+  const std::string scene = tiny_scene();
+  for (const char* frames : {"x", "3-1", "0", "-2", "1-", "1-2-3", "2.5"}) {
+    EXPECT_THAT(refusal(64, {"run", scene, "--out", path("out"), "--frames", frames}),
+                HasSubstr("is not a range"));
+  }
+}
+
+TEST_F(CommandErrors, InfoOfNothing_NoInput) {
+  EXPECT_THAT(refusal(66, {"info", path("none")}), HasSubstr("none"));
+  EXPECT_THAT(refusal(66, {"info", folder_.string()}), HasSubstr("is this the folder of a run?"));
+  EXPECT_THAT(refusal(64, {"info", tiny_scene()}), HasSubstr("is not a .vdb, .ply or .checkpoint file"));
+}
+
+TEST_F(CommandErrors, MovieOfNothing_NoInput) {
+  EXPECT_THAT(refusal(66, {"movie", path("none")}), HasSubstr("is this the folder of a run?"));
+  EXPECT_THAT(refusal(64, {"movie", path("none"), "--first", "5", "--last", "2"}),
+              HasSubstr("before --first 5"));
+}
+
+TEST_F(CommandErrors, BenchFileThatCannotBe_IsFoundBeforeTheWork) {
+  const std::string file = tiny_scene() + "/bench.json";
+  EXPECT_THAT(refusal(73, {"bench", tiny_scene(), "--json", file}), HasSubstr(file));
+}
+
+TEST_F(CommandErrors, PhysicsThatGivesOut_NamesTheParticleAndLeavesABundle) {
+  // Gravity is no limit of the step, so this one throws particles over cells even in an eighth of the step.
+  const std::string scene = tiny_scene(R"(, "gravity": {"acceleration": [0, -1e9, 0]})");
+  const Finished finished = repose({"run", scene, "--out", path("out"), "--quiet"});
+  EXPECT_EQ(finished.code, 70);
+  EXPECT_THAT(finished.err, HasSubstr("particle "));
+  EXPECT_THAT(finished.err, HasSubstr("of 'box'"));
+  EXPECT_THAT(finished.err, HasSubstr(path("out") + "/diagnostics"));
+  EXPECT_EQ(finished.err.find('\n'), finished.err.size() - 1) << finished.err;
+  const Json::Value failure = read_json(path("out/diagnostics/failure.json"));
+  EXPECT_EQ(failure["particle"]["set"], "box");
+  EXPECT_LT(failure["particle"]["id"].asInt(), 1000);
+  EXPECT_NE(failure["particle"]["reason"].asString(), "");
+  EXPECT_EQ(failure["particle"]["position"].size(), 3u);
+  EXPECT_THAT(finished.err, HasSubstr("particle " + failure["particle"]["id"].asString() + " of"));
+  EXPECT_EQ(read_json(path("out/run.json"))["end"], failure["error"]);
+  EXPECT_EQ(repose({"info", path("out/diagnostics/last_good.checkpoint")}).code, 0);
+  EXPECT_EQ(repose({"check", path("out/diagnostics/scene.json")}).code, 0);
+}
+
+}  // namespace
+}  // namespace repose

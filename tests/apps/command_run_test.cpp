@@ -1,0 +1,157 @@
+// Repose tests: `repose run`: what it leaves, what it says of itself, and that threads change no bit of it.
+#include <gmock/gmock.h>
+
+#include "tests/apps/command_probe.h"
+
+namespace repose {
+namespace {
+
+using ::testing::HasSubstr;
+using CommandRun = CommandTest;
+
+std::size_t files_with(const std::string& folder, const std::string& ending) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    count += entry.path().filename().string().ends_with(ending) ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(CommandRun, Log_HasEveryPromisedField) {
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--threads", "2"}).code, 0);
+  const Json::Value log = read_json(path("out/run.json"));
+  EXPECT_THAT(log["repose"].asString(), ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+  EXPECT_NE(log["compiler"].asString(), "");
+  EXPECT_NE(log["target"].asString(), "");
+  EXPECT_EQ(log["threads"], 2);
+  EXPECT_EQ(log["precision"], "single");
+  EXPECT_EQ(log["scene"]["name"], "tiny");
+  EXPECT_EQ(log["scene"]["hash"].asString().size(), 16u);
+  EXPECT_EQ(log["end"], "complete");
+  for (const char* effect : {"gravity", "collider", "volume_correction"}) {
+    EXPECT_TRUE(log["effects"][effect]["on"].isBool()) << effect;
+    EXPECT_NE(log["effects"][effect]["why"].asString(), "") << effect;
+  }
+  EXPECT_TRUE(log["effects"]["gravity"]["on"].asBool());
+  EXPECT_FALSE(log["effects"]["volume_correction"]["on"].asBool());
+  ASSERT_EQ(log["frames"].size(), 3u);
+}
+
+TEST_F(CommandRun, LogOfAFrame_HasEveryPromisedField) {
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--frames", "2"}).code, 0);
+  const Json::Value frame = read_json(path("out/run.json"))["frames"][1];
+  EXPECT_EQ(frame["frame"], 2);
+  EXPECT_DOUBLE_EQ(frame["time"].asDouble(), 0.02);
+  EXPECT_GT(frame["steps"].asInt(), 0);
+  EXPECT_GT(frame["dt"]["least"].asDouble(), 0.0);
+  EXPECT_GE(frame["dt"]["largest"].asDouble(), frame["dt"]["least"].asDouble());
+  int bound = 0;
+  for (const Json::Value& steps : frame["bound_by"]) bound += steps.asInt();
+  EXPECT_EQ(bound, frame["steps"].asInt());
+  for (const char* key : {"kinetic", "affine", "elastic", "potential"})
+    EXPECT_TRUE(frame["energy"][key].isDouble()) << key;
+  EXPECT_GT(frame["energy"]["kinetic"].asDouble(), 0.0);
+  for (const char* key : {"momentum", "angular_momentum", "center_of_mass"})
+    EXPECT_EQ(frame[key].size(), 3u) << key;
+  // 2200 kg/m^3 in a litre of sand that falls from rest with 9.81 m/s^2.
+  EXPECT_NEAR(frame["mass"].asDouble(), 2.2, 1e-6);
+  EXPECT_NEAR(frame["volume"].asDouble(), 1e-3, 2e-6);
+  EXPECT_NEAR(frame["ledger"]["held"].asDouble(), 2.2, 1e-6);
+  EXPECT_EQ(frame["ledger"]["emitted"].asDouble(), 0.0);
+  EXPECT_EQ(frame["ledger"]["removed"].asDouble(), 0.0);
+  EXPECT_TRUE(frame["solver_iterations"].isInt());
+  for (const char* key : {"wall", "order", "scatter", "nodes", "inspect", "gather"}) {
+    EXPECT_TRUE(frame["seconds"][key].isDouble()) << key;
+  }
+  EXPECT_TRUE(frame["deepest"]["cells"].isDouble());
+  EXPECT_EQ(frame["particles"], 1000);
+  EXPECT_EQ(frame["hash"].asString().size(), 16u);
+}
+
+TEST_F(CommandRun, OneAndTwoThreads_EqualHashesOfEveryFrame) {
+  const std::string scene = tiny_scene(R"(, "volume_correction": {})");
+  ASSERT_EQ(repose({"run", scene, "--out", path("one"), "--threads", "1", "--quiet"}).code, 0);
+  ASSERT_EQ(repose({"run", scene, "--out", path("two"), "--threads", "2", "--quiet"}).code, 0);
+  const Json::Value one = read_json(path("one/run.json"))["frames"],
+                    two = read_json(path("two/run.json"))["frames"];
+  ASSERT_EQ(one.size(), 10u);
+  ASSERT_EQ(two.size(), 10u);
+  for (Json::ArrayIndex k = 0; k < 10; ++k) {
+    EXPECT_EQ(one[k]["hash"], two[k]["hash"]);
+    EXPECT_EQ(one[k]["energy"], two[k]["energy"])
+        << "figures are summed in an order that threads do not change";
+    if (k == 0) continue;
+    EXPECT_NE(one[k]["hash"], one[k - 1]["hash"]);
+  }
+}
+
+TEST_F(CommandRun, Outputs_AreThoseTheSceneAsks) {
+  const std::string scene = tiny_scene(R"(, "output": {"vdb": true, "ply": true, "vtp": true})");
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "3"}).code, 0);
+  for (const char* ending : {".vdb", ".ply", ".vtp"}) EXPECT_EQ(files_with(path("out"), ending), 3u) << ending;
+  EXPECT_EQ(files_with(path("out"), ".checkpoint"), 2u);
+  EXPECT_EQ(files_with(path("out"), ".vtp.series"), 1u);
+  ASSERT_EQ(repose({"run", scene, "--out", path("none"), "--frames", "2", "--set",
+                    R"(output={"vdb": false, "checkpoint": false})"})
+                .code,
+            0);
+  EXPECT_EQ(files_with(path("none"), ".vdb") + files_with(path("none"), ".checkpoint"), 0u);
+  EXPECT_EQ(files_with(path("none"), "run.json"), 1u);
+}
+
+TEST_F(CommandRun, FramesFromTo_WritesOnlyThose) {
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3-4"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("out/tiny.points.0002.vdb")));
+  EXPECT_TRUE(std::filesystem::exists(path("out/tiny.points.0003.vdb")));
+  EXPECT_TRUE(std::filesystem::exists(path("out/tiny.points.0004.vdb")));
+  EXPECT_FALSE(std::filesystem::exists(path("out/tiny.points.0005.vdb")));
+}
+
+TEST_F(CommandRun, Json_IsOneLinePerFrame) {
+  const Finished run = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--json"});
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 3);
+  EXPECT_THAT(run.out, ::testing::StartsWith("{"));
+  EXPECT_EQ(run.err, "");
+}
+
+TEST_F(CommandRun, Quiet_SaysNothing) {
+  const Finished run = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "2", "--quiet"});
+  EXPECT_EQ(run.out + run.err, "");
+  const Finished more =
+      repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--quiet", "--resume"});
+  EXPECT_EQ(more.code, 0);
+  EXPECT_EQ(more.out + more.err, "");
+}
+
+TEST_F(CommandRun, SetBeforeTheScene_TakesOneWord) {
+  const Finished run = repose({"run", "--set", "bodies.box.seed=2", tiny_scene(), "--set", "time.frames=2",
+                               "--out", path("out"), "--quiet"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(read_json(path("out/run.json"))["frames"].size(), 2u);
+}
+
+TEST_F(CommandRun, SceneBesideTheRun_RunsToTheSameHash) {
+  // What is kept beside a run has the overrides in it, so that it is the whole description.
+  ASSERT_EQ(
+      repose({"run", tiny_scene(), "--out", path("a"), "--frames", "2", "--set", "bodies.box.seed=5"}).code, 0);
+  ASSERT_EQ(repose({"run", path("a/scene.json"), "--out", path("b"), "--frames", "2"}).code, 0);
+  EXPECT_EQ(hash_of_last_frame(path("a")), hash_of_last_frame(path("b")));
+  EXPECT_EQ(read_json(path("a/run.json"))["scene"]["hash"], read_json(path("b/run.json"))["scene"]["hash"]);
+}
+
+TEST_F(CommandRun, OlderRunInTheFolder_IsNotResumed) {
+  // A shorter run over a longer one: the checkpoints of the longer one must not outlive it.
+  const std::string scene = tiny_scene();
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "6"}).code, 0);
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "2", "--set", "bodies.box.seed=5"}).code,
+            0);
+  EXPECT_TRUE(std::filesystem::exists(path("out/tiny.state.0002.checkpoint")));
+  EXPECT_FALSE(std::filesystem::exists(path("out/tiny.state.0006.checkpoint")));
+  const Finished more =
+      repose({"run", scene, "--out", path("out"), "--frames", "3", "--resume", "--set", "bodies.box.seed=5"});
+  EXPECT_EQ(more.code, 0) << more.err;
+  EXPECT_THAT(more.err, HasSubstr("after frame 2"));
+}
+
+}  // namespace
+}  // namespace repose

@@ -1,0 +1,205 @@
+// Repose tests: checkpoints: a state comes back bit for bit, or the error names what is wrong with the file.
+#include "engine/io/checkpoint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "engine/state/state_hash.h"
+
+namespace repose {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr std::size_t kParticles = 50;
+
+/// Two sets in five blocks; the second has two extra channels. Every value differs, and some are no plain
+/// numbers.
+template <class Real>
+State<Real> make_state(bool filled) {
+  State<Real> state;
+  state.spacing = 0.1;
+  const std::vector<Index3> owners{{0, 0, 0}, {1, 0, 0}, {-3, 7, 2}, {250000, -250000, 1}, {0, 0, 1}};
+  if (filled) state.grid.build(owners, state.topology);
+  for (int k = 0; k < 2; ++k) {
+    ParticleSet<Real>& set = state.sets.emplace_back();
+    set.name = k == 0 ? "first" : "second";
+    for (const char* name : {"gained", "age"}) {
+      if (k == 1) set.extra.push_back({name, {}});
+    }
+    set.allocate(kParticles);
+    if (!filled) continue;
+    int value = 17 * k;
+    set.for_each_real([&](AlignedArray<Real>& channel) {
+      for (std::size_t p = 0; p < set.count; ++p) channel[p] = Real(1) / Real(++value);
+    });
+    set.velocity[1][3] = -Real(0);
+    set.strain[2][4] = std::numeric_limits<Real>::denorm_min();
+    set.begin = {0, 10, 10, 25, 49, 50};
+    for (std::size_t p = 0; p < set.count; ++p) set.id[p] = static_cast<std::uint32_t>(1000 * k + 7 * p);
+  }
+  if (filled) {
+    state.counters = {3, 271, 0.0123, 0.1373, 1e-4, 2.5, 17.0, 0, 991, 5, 8};
+  }
+  return state;
+}
+
+template <class Real>
+class Checkpoint : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("repose_checkpoint_" + std::string(test->name()) +
+                                           std::to_string(sizeof(Real)) + "_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path() const { return (folder_ / "a.checkpoint").string(); }
+
+  void save(const State<Real>& state) const {
+    const auto saved = save_checkpoint(state, "0123456789abcdef", path());
+    ASSERT_TRUE(saved) << saved.error().text();
+  }
+  Error load_error(State<Real>& state, const std::string& scene = "0123456789abcdef") const {
+    const auto loaded = load_checkpoint(path(), scene, state);
+    EXPECT_FALSE(loaded);
+    return loaded ? Error{} : loaded.error();
+  }
+  std::string bytes() const {
+    std::ifstream file(path(), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  void rewrite(const std::string& text) const { std::ofstream(path(), std::ios::binary) << text; }
+
+  fs::path folder_;
+};
+
+using Reals = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(Checkpoint, Reals);
+
+TYPED_TEST(Checkpoint, SavedAndLoaded_IsTheSameBitForBit) {
+  const State<TypeParam> saved = make_state<TypeParam>(true);
+  this->save(saved);
+  State<TypeParam> loaded = make_state<TypeParam>(false);
+  const auto result = load_checkpoint(this->path(), "0123456789abcdef", loaded);
+  ASSERT_TRUE(result) << result.error().text();
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(loaded.sets[k].begin, saved.sets[k].begin);
+    std::vector<const TypeParam*> before;
+    saved.sets[k].for_each_real([&](const auto& channel) { before.push_back(channel.data()); });
+    std::size_t c = 0;
+    loaded.sets[k].for_each_real([&](const auto& channel) {
+      EXPECT_EQ(std::memcmp(channel.data(), before[c], kParticles * sizeof(TypeParam)), 0) << "channel " << c;
+      ++c;
+    });
+    EXPECT_EQ(c, 21u + 2u * k);
+    EXPECT_EQ(std::memcmp(loaded.sets[k].id.data(), saved.sets[k].id.data(), kParticles * 4), 0);
+  }
+  EXPECT_EQ(std::memcmp(&loaded.counters, &saved.counters, sizeof(Counters)), 0);
+  ASSERT_EQ(loaded.grid.size(), saved.grid.size());
+  EXPECT_TRUE(
+      std::equal(loaded.grid.blocks().begin(), loaded.grid.blocks().end(), saved.grid.blocks().begin()));
+  EXPECT_TRUE(
+      std::equal(loaded.grid.owners().begin(), loaded.grid.owners().end(), saved.grid.owners().begin()));
+  EXPECT_EQ(state_hash(loaded), state_hash(saved));
+  EXPECT_EQ(loaded.rows_touched.size(), loaded.grid.owners().size());
+  EXPECT_EQ(loaded.nodes.values.size(), loaded.grid.size() * kBlockValues);
+}
+
+TYPED_TEST(Checkpoint, SavedTwice_EqualBytes) {
+  this->save(make_state<TypeParam>(true));
+  const std::string first = this->bytes();
+  this->save(make_state<TypeParam>(true));
+  EXPECT_EQ(this->bytes(), first);
+}
+
+TYPED_TEST(Checkpoint, AnyFlippedBit_IsRefused) {
+  this->save(make_state<TypeParam>(true));
+  const std::string good = this->bytes();
+  State<TypeParam> state = make_state<TypeParam>(false);
+  for (std::size_t at = 0; at < good.size(); at += 101) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 4);
+    this->rewrite(bad);
+    EXPECT_EQ(this->load_error(state).kind, ErrorKind::kIo) << "byte " << at;
+  }
+}
+
+TYPED_TEST(Checkpoint, FlippedBit_NamesFileAndChunk) {
+  this->save(make_state<TypeParam>(true));
+  std::string bad = this->bytes();
+  const std::size_t head = bad.find("set1.3");  // the first velocity of the second set
+  ASSERT_NE(head, std::string::npos);
+  bad[head + 32 + 5] = static_cast<char>(bad[head + 32 + 5] ^ 1);
+  this->rewrite(bad);
+  State<TypeParam> state = make_state<TypeParam>(false);
+  EXPECT_EQ(this->load_error(state).text(),
+            this->path() + ": chunk 'set1.3' does not have its checksum; use an older checkpoint");
+}
+
+TYPED_TEST(Checkpoint, CutAnywhere_IsRefused) {
+  this->save(make_state<TypeParam>(true));
+  const std::string good = this->bytes();
+  State<TypeParam> state = make_state<TypeParam>(false);
+  for (std::size_t size = 0; size < good.size(); size += 97) {
+    this->rewrite(good.substr(0, size));
+    EXPECT_EQ(this->load_error(state).kind, ErrorKind::kIo) << "cut at " << size;
+  }
+  this->rewrite(good.substr(0, good.size() - 1));
+  EXPECT_THAT(this->load_error(state).text(), HasSubstr("chunk 'set1.22' is cut short"));
+}
+
+TYPED_TEST(Checkpoint, OtherScene_NamesBoth) {
+  this->save(make_state<TypeParam>(true));
+  State<TypeParam> state = make_state<TypeParam>(false);
+  const Error error = this->load_error(state, "fedcba9876543210");
+  EXPECT_EQ(error.kind, ErrorKind::kBadScene);
+  EXPECT_THAT(error.text(), HasSubstr("0123456789abcdef"));
+  EXPECT_THAT(error.text(), HasSubstr("fedcba9876543210"));
+}
+
+TYPED_TEST(Checkpoint, OtherPrecisionOrParticles_IsRefused) {
+  this->save(make_state<TypeParam>(true));
+  using Other = std::conditional_t<sizeof(TypeParam) == 4, double, float>;
+  State<Other> other = make_state<Other>(false);
+  const auto precision = load_checkpoint(this->path(), "0123456789abcdef", other);
+  ASSERT_FALSE(precision);
+  EXPECT_EQ(precision.error().kind, ErrorKind::kBadScene);
+  State<TypeParam> more = make_state<TypeParam>(false);
+  more.sets[1].allocate(kParticles + 1);
+  EXPECT_EQ(this->load_error(more).kind, ErrorKind::kBadScene);
+}
+
+TYPED_TEST(Checkpoint, NoFile_NoInput) {
+  State<TypeParam> state = make_state<TypeParam>(false);
+  EXPECT_EQ(this->load_error(state).kind, ErrorKind::kNoInput);
+}
+
+TYPED_TEST(Checkpoint, OtherFile_IsRefused) {
+  this->rewrite("REPOSE STATE 9\n" + std::string(1000, ' '));
+  State<TypeParam> state = make_state<TypeParam>(false);
+  const Error error = this->load_error(state);
+  EXPECT_EQ(error.kind, ErrorKind::kIo);
+  EXPECT_THAT(error.text(), HasSubstr("is not a checkpoint of this version"));
+}
+
+TYPED_TEST(Checkpoint, Header_TellsCounters) {
+  this->save(make_state<TypeParam>(true));
+  const auto header = read_checkpoint_header(this->path());
+  ASSERT_TRUE(header) << header.error().text();
+  EXPECT_EQ(header->scene_hash, "0123456789abcdef");
+  EXPECT_EQ(header->precision_bytes, static_cast<int>(sizeof(TypeParam)));
+  EXPECT_EQ(header->particles, 2 * kParticles);
+  EXPECT_EQ(header->counters.frame, 3);
+  EXPECT_EQ(header->counters.step, 271);
+}
+
+}  // namespace
+}  // namespace repose

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Points as other programs read them: a sample of every format, then the output of a real run.
+#   foreign_readers.sh WRITE_SAMPLES REPOSE FOREIGN_READERS
+set -euo pipefail
+write_samples=$1 repose=$2 readers=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+"$write_samples" "$folder/samples"
+/usr/bin/python3 "$readers" "$folder/samples"
+
+cat >"$folder/scene.json" <<'SCENE'
+{"repose": 1, "name": "tiny", "grid": {"spacing": 0.02}, "time": {"frames": 1, "frames_per_second": 100},
+ "materials": {"sand": {"type": "drucker_prager"}, "rubber": {"type": "elastic"}},
+ "bodies": [{"name": "a", "material": "sand",
+             "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.1, 0.1, 0.1]}},
+            {"name": "b", "material": "rubber",
+             "shape": {"type": "sphere", "center": [0.05, 0.2, 0.05], "radius": 0.05}}],
+ "output": {"vdb": true, "ply": true, "vtp": true}}
+SCENE
+"$repose" run "$folder/scene.json" --out "$folder/run" --quiet
+# What the run says of itself in run.json is what the foreign readers must find.
+/usr/bin/python3 - "$folder/run" <<'PYTHON'
+import json, sys
+folder = sys.argv[1]
+log = json.load(open(folder + "/run.json"))
+frame = log["frames"][0]
+figures = {"count": frame["particles"], "first_ids": [0, 1, 2], "bounds": [frame["lower"], frame["upper"]],
+           "spacing": log["scene"]["spacing"], "attributes": ["material"]}
+json.dump(figures, open(folder + "/tiny.points.json", "w"))
+PYTHON
+/usr/bin/python3 "$readers" "$folder/run" --name tiny.points
