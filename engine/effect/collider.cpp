@@ -78,8 +78,8 @@ class ContactTables {
 template <class Real>
 typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const State<Real>& state,
                                                                        const Index3& block) const {
-  // Half the diagonal of a block's nodes, and the cell that a node may be predicted to move along each axis.
-  const double reach = (1.5 + 1.0) * std::sqrt(3.0) * state.spacing;
+  // Half the diagonal of a block's nodes, the cell that a node may be predicted to move along each axis, its own reach.
+  const double reach = ((1.5 + 1.0) * std::sqrt(3.0) + kNodeReach) * state.spacing;
   NearSolids near;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     if (solids_[k].distance(state.world(block, {1.5, 1.5, 1.5})) > reach) continue;

@@ -61,7 +61,7 @@ class ContactTables;
 template <class Real>
 OrderPass<Real> near_solids_pass(std::shared_ptr<ContactTables<Real>> tables);
 
-/// v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016, sections 8.1 and 8.2), in the
+/// v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016, sections 8 and 8.1), in the
 /// order of the scene's list.
 template <class Real>
 NodePass<Real> collide_pass(std::shared_ptr<ContactTables<Real>> tables);

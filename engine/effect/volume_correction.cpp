@@ -8,7 +8,7 @@ void describe(Fields&, VolumeCorrection&) {}
 template <class Real>
 ParticlePass<Real> open_volume_pass(const StepPlan<Real>& plan, std::size_t channel) {
   const auto kernel = plan.kernels->open_volume;
-  return {{"volume correction, before", "volume_correction", {"trial strain"}, {"trial strain", "trace of trial"}},
+  return {{"volume correction, before", "volume_correction", {"trial strain", kVolumeGained}, {"trial strain", "trace of trial"}},
           [kernel, channel](Chunk<Real>& chunk) {
             const Real* gained = chunk.set.extra[channel].values.data() + chunk.first;
             kernel(chunk.particles.strain, gained, chunk.scratch.value.data(), chunk.particles.count);

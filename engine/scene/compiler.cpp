@@ -165,6 +165,7 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
   plan.kernels = &kernels<Real>(options.target);
   plan.transfer = transfer_constants(scene);
   plan.limits = step_limits(scene);
+  plan.advection = scene.grid.advection;
   const Lattice<Real> lattice = make_lattice(state, plan.transfer);
   double lightest = std::numeric_limits<double>::infinity();
   for (const auto& set : state.sets) {

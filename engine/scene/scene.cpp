@@ -13,6 +13,10 @@ namespace {
 constexpr Choice kUpAxes[] = {{"y", "y is up"}, {"z", "z is up"}};
 constexpr Choice kPrecisions[] = {{"single", "float, the fast one"}, {"double", "double, for reference"}};
 constexpr Choice kStencils[] = {{"quadratic", "quadratic B-spline, 27 nodes"}};
+constexpr Choice kAdvections[] = {
+    {"after_friction", "the velocity that particles keep; what friction holds, rests"},
+    {"before_friction", "as Klar et al. 2016; what friction holds creeps a little, by more in longer steps"},
+};
 constexpr Choice kTransfers[] = {{"apic", "affine particle-in-cell, Jiang et al. 2015"}};
 constexpr Choice kFlatAxes[] = {
     {"none", "three dimensions"}, {"x", "nothing varies along x"}, {"y", "along y"}, {"z", "along z"}};
@@ -68,6 +72,7 @@ void describe_grid(Fields& fields, GridDescription& grid) {
   fields.choice("precision", grid.precision, kPrecisions, "type of particle and node data");
   fields.choice("stencil", grid.stencil, kStencils, "how a particle spreads over nodes");
   fields.choice("transfer", grid.transfer, kTransfers, "how momentum moves between particles and nodes");
+  fields.choice("advection", grid.advection, kAdvections, "which velocity moves particles where there is friction");
   fields.integers("origin_cells", grid.origin_cells,
                   {.unit = "cells",
                    .meaning = "where the scene's origin lies in the lattice; multiples of 8",

@@ -36,6 +36,7 @@ struct GridDescription {
   Precision precision = Precision::kSingle;
   StencilKind stencil = StencilKind::kQuadratic;
   TransferKind transfer = TransferKind::kApic;
+  Advection advection = Advection::kAfterFriction;
   std::array<std::int64_t, 3> origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice; multiples of 8
   std::optional<int> plane_strain;     ///< the axis (0, 1, 2) across which nothing varies
   std::array<PeriodicAxis, 3> periodic;

@@ -27,7 +27,7 @@ std::string describe_offender(const Offender& offender, const StepReport& report
                 "(velocity %.3g m/s, trial %.3g m/s, det(I + dt grad v) = %.3g); smaller time.sound or a finer "
                 "grid.spacing may help",
                 offender.id, offender.set.c_str(), offender.position[0], offender.position[1], offender.position[2],
-                offender.reason.c_str(), 2.0 * report.dt, offender.velocity.norm(), offender.trial_velocity.norm(),
+                offender.reason.c_str(), report.dt, offender.velocity.norm(), offender.trial_velocity.norm(),
                 offender.determinant);
   return text;
 }

@@ -6,7 +6,7 @@ namespace repose {
 namespace {
 
 /// What a state holds before its first step.
-const std::set<std::string> kInitial{"position", "velocity", "affine", "strain", "topology"};
+const std::set<std::string> kInitial{"position", "velocity", "affine", "strain", "topology", "volume_gained"};
 
 Result<void> follow(const PassDescription& pass, std::set<std::string>& known) {
   for (const std::string& quantity : pass.reads) {

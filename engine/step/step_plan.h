@@ -16,8 +16,8 @@ namespace repose {
 /// What passes hand to one another within a chunk of particles; one per thread.
 template <class Real>
 struct Scratch {
-  AlignedArray<Real> arena{kArenaValues};           ///< nodes of a block and its halo: sums, later v-bar
-  AlignedArray<Real> friction_arena{kArenaValues};  ///< v-tilde
+  AlignedArray<Real> arena{kArenaValues};      ///< nodes of a block and its halo: sums, later the moving velocity
+  AlignedArray<Real> kept_arena{kArenaValues};  ///< v-tilde, where it is not what moves
   AlignedArray<Real> stress{kStrainComponents * kChunk};
   AlignedArray<Real> velocity{3 * kChunk};
   AlignedArray<Real> affine{kAffineComponents * kChunk};
@@ -33,11 +33,11 @@ struct Chunk {
   Scratch<Real>& scratch;
   Real dt;
   double spacing;                  ///< dx, m
-  bool friction = false;           ///< whether v-tilde differs from v-bar here
+  bool two_velocities = false;     ///< whether particles keep another velocity than the one that moves them
   std::uint64_t rows = 0;          ///< arena rows touched
   std::size_t runs = 0;
-  const Real* velocity_bar[3] = {};                  ///< sum w v-bar, set by the gather
-  const Real* gradient_bar[kAffineComponents] = {};  ///< gradient of v-bar, 1/s
+  const Real* moving_velocity[3] = {};                  ///< what moves positions, m/s; set by the gather
+  const Real* moving_gradient[kAffineComponents] = {};  ///< what strains, 1/s
   Motion<Real> motion;
 };
 
@@ -90,6 +90,14 @@ struct StepLimits {
   std::vector<Stiffness> sets;
 };
 
+/// Which velocity moves positions and strain where there is friction. Klar et al. 2016 (section 5.4) take v-bar; then
+/// all the shear of a step reaches the nodes at a wall before friction does, and what should rest creeps by about
+/// 2 dt g sin(theta) H / dx. With explicit steps v-tilde is as stable, rests, and saves the second gather.
+enum class Advection {
+  kAfterFriction,   ///< v-tilde
+  kBeforeFriction,  ///< v-bar
+};
+
 /// Constants of stencil and transfer that the engine needs outside the kernels.
 struct TransferConstants {
   int stencil = 0, transfer = 0;  ///< positions in the kernels' lists
@@ -103,6 +111,7 @@ struct StepPlan {
   TransferConstants transfer;
   StepLimits limits;
   Real least_mass = 0;  ///< kg; a node below it is empty
+  Advection advection = Advection::kAfterFriction;
 
   std::vector<OrderPass<Real>> order;
   std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set

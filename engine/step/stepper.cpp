@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/step/transfer_stages.h"
 
@@ -14,6 +15,9 @@ constexpr std::int64_t kCostOfRun = 14;
 constexpr std::int64_t kCostOfOrder = 30;
 
 constexpr int kMostHalvings = 3;
+
+/// A step shorter than this share of the scene's longest would never end: nothing real moves so fast.
+constexpr double kLeastShare = 1e-12;
 
 }  // namespace
 
@@ -51,9 +55,14 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   order_if_due(state);
   const StepSize size = choose_step(plan_.limits, plan_.transfer, state.spacing, state.counters, remaining);
   StepReport report;
-  report.dt = size.dt;
   report.limit = size.limit;
-  for (; report.redone <= kMostHalvings; ++report.redone, report.dt *= 0.5) {
+  if (!(size.dt >= kLeastShare * plan_.limits.max_step)) {  // also when a speed is not finite
+    report.dt = size.dt;
+    report.offender = fastest(state);
+    return report;
+  }
+  for (; report.redone <= kMostHalvings; ++report.redone) {
+    report.dt = std::ldexp(size.dt, -report.redone);
     const Real dt = static_cast<Real>(report.dt);
     scatter(state, dt);
     update_nodes(state, dt);
@@ -66,6 +75,28 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     return report;
   }
   return report;
+}
+
+/// The particle for whose sake no step is short enough.
+template <class Real>
+Offender Stepper<Real>::fastest(const State<Real>& state) const {
+  Offender offender;
+  double most = -1.0;
+  for (const auto& set : state.sets) {
+    for (std::size_t p = 0; p < set.count; ++p) {
+      const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
+      double size = v.squaredNorm();
+      for (const auto& c : set.affine) size += double(c[p]) * double(c[p]) * state.spacing * state.spacing;
+      if (size <= most) continue;
+      most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
+      offender.set = set.name;
+      offender.id = set.id[p];
+      offender.velocity = offender.trial_velocity = v;
+    }
+  }
+  offender.determinant = 1.0;
+  offender.reason = "is too fast for any step";
+  return offender;
 }
 
 template <class Real>
@@ -167,8 +198,7 @@ std::optional<Offender> Stepper<Real>::inspect(State<Real>& state, Real dt) {
 template <class Real>
 std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::size_t owner, Real dt) {
   Scratch<Real>& mine = scratch();
-  bool friction = false;
-  load_arenas(state, owner, mine, friction);
+  load_arenas(state, owner, mine);
   const Lattice<Real> lattice = make_lattice(state, plan_.transfer);
   const auto kernel = plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gather;
   std::optional<Offender> offender;
@@ -177,51 +207,57 @@ std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::si
     GatherInput<Real> in{chunk.particles, lattice, {}, {}};
     for (std::size_t axis = 0; axis < 3; ++axis) in.velocity[axis] = mine.velocity.data() + axis * kChunk;
     for (std::size_t k = 0; k < kAffineComponents; ++k) in.affine[k] = mine.affine.data() + k * kChunk;
-    for (Real* const arena : {mine.arena.data(), friction ? mine.friction_arena.data() : nullptr}) {
-      if (arena == nullptr || offender) continue;
-      kernel(in, arena);
-      const std::size_t p = plan_.kernels->inspect(in.velocity, in.affine, chunk.particles.count, dt, lattice.spacing);
-      if (p == chunk.particles.count) continue;
-      offender = Offender{};
-      offender->set = chunk.set.name;
-      offender->id = chunk.set.id[chunk.first + p];
-      offender->block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
-      std::array<double, 3> offset{};
-      Mat3 map = Mat3::Identity();
-      for (int axis = 0; axis < 3; ++axis) {
-        offset[static_cast<std::size_t>(axis)] = chunk.particles.position[axis][p];
-        offender->velocity[axis] = chunk.particles.velocity[axis][p];
-        offender->trial_velocity[axis] = in.velocity[axis][p];
-        for (int c = 0; c < 3; ++c) map(axis, c) += static_cast<double>(dt) * in.affine[3 * axis + c][p];
-      }
-      offender->position = state.world(offender->block, offset);
-      offender->determinant = map.determinant();
-      const bool finite = offender->trial_velocity.allFinite() && std::isfinite(offender->determinant);
-      offender->reason = !finite                       ? "is not finite"
-                         : offender->determinant <= 0.0 ? "would be turned inside out"
-                                                        : "would move over a cell";
-    }
+    kernel(in, mine.arena.data());
+    const std::size_t p = plan_.kernels->inspect(in.velocity, in.affine, chunk.particles.count, dt, lattice.spacing);
+    if (p < chunk.particles.count) offender = accuse(state, owner, chunk, p, in);
   });
   return offender;
 }
 
 template <class Real>
-void Stepper<Real>::load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& mine,
-                                bool& friction) const {
+Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, const Chunk<Real>& chunk, std::size_t p,
+                               const GatherInput<Real>& trial) const {
+  Offender offender;
+  offender.set = chunk.set.name;
+  offender.id = chunk.set.id[chunk.first + p];
+  offender.block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+  std::array<double, 3> offset{};
+  Mat3 map = Mat3::Identity();
+  for (int axis = 0; axis < 3; ++axis) {
+    offset[static_cast<std::size_t>(axis)] = chunk.particles.position[axis][p];
+    offender.velocity[axis] = chunk.particles.velocity[axis][p];
+    offender.trial_velocity[axis] = trial.velocity[axis][p];
+    for (int c = 0; c < 3; ++c) map(axis, c) += static_cast<double>(chunk.dt) * trial.affine[3 * axis + c][p];
+  }
+  offender.position = state.world(offender.block, offset);
+  offender.determinant = map.determinant();
+  const bool finite = offender.trial_velocity.allFinite() && std::isfinite(offender.determinant);
+  offender.reason = !finite                       ? "is not finite"
+                    : offender.determinant <= 0.0 ? "would be turned inside out"
+                                                  : "would move over a cell";
+  return offender;
+}
+
+/// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside it.
+template <class Real>
+bool Stepper<Real>::load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& mine) const {
   const auto neighbours = state.grid.neighbours(owner);
-  const Real* blocks[kNeighbours];
-  const Real* rubbed[kNeighbours];
-  friction = false;
+  const Real* bar[kNeighbours];
+  const Real* tilde[kNeighbours];
+  bool friction = false;
   for (std::size_t n = 0; n < kNeighbours; ++n) {
     const auto block = static_cast<std::size_t>(neighbours[n]);
-    blocks[n] = rubbed[n] = neighbours[n] < 0 ? nullptr : state.nodes.block(block);
+    bar[n] = tilde[n] = neighbours[n] < 0 ? nullptr : state.nodes.block(block);
     if (neighbours[n] >= 0 && state.after_friction.has(block)) {
-      rubbed[n] = state.after_friction.block(block);
+      tilde[n] = state.after_friction.block(block);
       friction = true;
     }
   }
-  plan_.kernels->load_arena(mine.arena.data(), state.rows_touched[owner], blocks);
-  if (friction) plan_.kernels->load_arena(mine.friction_arena.data(), state.rows_touched[owner], rubbed);
+  const std::uint64_t rows = state.rows_touched[owner];
+  const bool two = friction && plan_.advection == Advection::kBeforeFriction;
+  plan_.kernels->load_arena(mine.arena.data(), rows, two ? bar : tilde);
+  if (two) plan_.kernels->load_arena(mine.kept_arena.data(), rows, tilde);
+  return two;
 }
 
 template <class Real>
@@ -234,11 +270,10 @@ void Stepper<Real>::gather(State<Real>& state, Real dt) {
 
 template <class Real>
 Motion<Real> Stepper<Real>::gather_block(State<Real>& state, std::size_t owner, Real dt) {
-  bool friction = false;
-  load_arenas(state, owner, scratch(), friction);
+  const bool two_velocities = load_arenas(state, owner, scratch());
   Motion<Real> motion;
   for_each_chunk(state, owner, dt, [&](std::size_t k, Chunk<Real>& chunk) {
-    chunk.friction = friction;
+    chunk.two_velocities = two_velocities;
     chunk.motion = motion;
     for (const auto& pass : plan_.gather[k]) pass.run(chunk);
     motion = chunk.motion;

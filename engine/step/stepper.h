@@ -23,14 +23,14 @@ struct Offender {
   Vec3 velocity{0, 0, 0};       ///< m/s, before the step
   Vec3 trial_velocity{0, 0, 0}; ///< m/s, that the step would have moved it with
   double determinant = 0.0;     ///< det(I + dt grad v)
-  std::string reason;           ///< "moves over a cell", "inverts", "is not finite"
+  std::string reason;           ///< what would happen to it, such as "would move over a cell"
 };
 
 struct StepReport {
   bool accepted = false;
-  double dt = 0.0;
+  double dt = 0.0;                   ///< s; of the step made, or of the last one refused
   Limit limit = Limit::kMaxStep;
-  int redone = 0;                    ///< how often it was refused and halved
+  int redone = 0;                    ///< how often it was refused
   std::optional<Offender> offender;  ///< of the last refusal
 };
 
@@ -61,7 +61,10 @@ class Stepper {
   bool bounded(const State<Real>& state, std::size_t owner, Real dt) const;
   void gather(State<Real>& state, Real dt);
   Motion<Real> gather_block(State<Real>& state, std::size_t owner, Real dt);
-  void load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& scratch, bool& friction) const;
+  bool load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& scratch) const;
+  Offender accuse(const State<Real>& state, std::size_t owner, const Chunk<Real>& chunk, std::size_t p,
+                  const GatherInput<Real>& trial) const;
+  Offender fastest(const State<Real>& state) const;
   void finish(State<Real>& state, Real dt);
   Scratch<Real>& scratch() { return scratch_[static_cast<std::size_t>(Threads::index())]; }
   template <class Visit>

@@ -1,6 +1,6 @@
 // Repose: how long a step may be. Each limit has a name, and the name of the one that bound is reported, so that a
 // slow run says why it is slow:
-//   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, section 5.6)
+//   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, Table 2, has 1)
 //   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2, margins in docs/math.md
 //   isolated  a particle alone must not feed its own pulse: dt <= 2 dx / (a sqrt(2h - D^-1)), a^2 = (3 lambda + 2 mu)/rho;
 //             in the MLS form h = D^-1 (after Bai and Schroeder 2022)

@@ -13,7 +13,7 @@ MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, Chunk<
     in.strain[k] = chunk.particles.strain[k];
     in.stress[k] = chunk.scratch.stress.data() + static_cast<std::size_t>(k) * kChunk;
   }
-  for (int k = 0; k < kAffineComponents; ++k) in.affine[k] = chunk.gradient_bar[k];
+  for (int k = 0; k < kAffineComponents; ++k) in.affine[k] = chunk.moving_gradient[k];
   return in;
 }
 
@@ -57,12 +57,12 @@ ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>&
 template <class Real>
 ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice) {
   const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].gather;
-  return {{"gather", "", {"position", "node velocity"}, {"velocity", "affine", "particle v-bar", "gradient"}},
+  return {{"gather", "", {"position", "node velocity"}, {"velocity", "affine", "moving velocity", "gradient"}},
           [kernel, lattice](Chunk<Real>& chunk) {
             GatherInput<Real> in{};
             in.particles = chunk.particles;
             in.lattice = lattice;
-            const auto kept = [&](bool scratch) {
+            const auto target = [&](bool scratch) {
               for (std::size_t axis = 0; axis < 3; ++axis) {
                 in.velocity[axis] = scratch ? chunk.scratch.velocity.data() + axis * kChunk : chunk.particles.velocity[axis];
               }
@@ -70,24 +70,24 @@ ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& 
                 in.affine[k] = scratch ? chunk.scratch.affine.data() + k * kChunk : chunk.particles.affine[k];
               }
             };
-            // v-bar first; where there is friction it is needed beside the velocity that the particle keeps.
-            kept(chunk.friction);
+            // What moves the particle first; where it keeps another velocity, the first is needed beside it.
+            target(chunk.two_velocities);
             kernel(in, chunk.scratch.arena.data());
-            for (int axis = 0; axis < 3; ++axis) chunk.velocity_bar[axis] = in.velocity[axis];
-            for (int k = 0; k < kAffineComponents; ++k) chunk.gradient_bar[k] = in.affine[k];
-            if (!chunk.friction) return;
-            kept(false);
-            kernel(in, chunk.scratch.friction_arena.data());
+            for (int axis = 0; axis < 3; ++axis) chunk.moving_velocity[axis] = in.velocity[axis];
+            for (int k = 0; k < kAffineComponents; ++k) chunk.moving_gradient[k] = in.affine[k];
+            if (!chunk.two_velocities) return;
+            target(false);
+            kernel(in, chunk.scratch.kept_arena.data());
           }};
 }
 
 template <class Real>
 ParticlePass<Real> advance_pass(const StepPlan<Real>& plan) {
   const auto kernel = plan.kernels->advance;
-  return {{"advance", "", {"position", "particle v-bar"}, {"position"}},
+  return {{"advance", "", {"position", "moving velocity"}, {"position"}},
           [kernel](Chunk<Real>& chunk) {
             const Real per_cell = static_cast<Real>(static_cast<double>(chunk.dt) / chunk.spacing);
-            kernel(chunk.particles, chunk.velocity_bar, per_cell, chunk.motion);
+            kernel(chunk.particles, chunk.moving_velocity, per_cell, chunk.motion);
           }};
 }
 

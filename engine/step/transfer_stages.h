@@ -1,6 +1,6 @@
 // Repose: the core of every explicit step, as passes: stress and scatter on the way to the nodes; gather, advance,
-// trial strain and return map on the way back. v-bar (after collisions) moves positions and strain, v-tilde (after
-// friction) is what particles keep (Klar et al. 2016, section 5.4).
+// trial strain and return map on the way back. Where there is friction two node velocities exist, v-bar (after
+// collisions) and v-tilde (after friction); particles keep v-tilde, and Advection says which one moves them.
 #pragma once
 
 #include <memory>

@@ -83,7 +83,7 @@ REPOSE_INLINE Sym3<N> compose(const Eigen3<N>& e) {
   return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
 }
 
-/// Below this Frobenius norm the polynomials of log1p and expm1 of degree 6 and 7 are exact to the precision.
+/// Below this Frobenius norm the polynomials of log1p and expm1, of degree 6, are exact to the precision.
 template <class T>
 inline constexpr T kSmallMatrix = sizeof(T) == 4 ? T(0.05) : T(3e-3);
 

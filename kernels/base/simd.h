@@ -115,7 +115,7 @@ REPOSE_INLINE Pack<T> select(Mask<T> condition, Pack<T> yes, Pack<T> no) {
 }
 template <class T>
 REPOSE_INLINE bool any(Mask<T> mask) { return !hn::AllFalse(PackTag<T>(), mask.raw); }
-/// True where every one of the first `count` lanes holds.
+/// Whether one of the first `count` lanes holds.
 template <class T>
 REPOSE_INLINE bool any_first(Mask<T> mask, std::size_t count) {
   return !hn::AllFalse(PackTag<T>(), hn::And(mask.raw, hn::FirstN(PackTag<T>(), count)));

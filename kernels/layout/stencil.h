@@ -1,4 +1,4 @@
-// Repose: stencils, the B-splines through which particles and nodes speak (Klar et al. 2016, section 5.1). The
+// Repose: stencils, the B-splines through which particles and nodes speak (Klar et al. 2016, section 5, eqs. 5-6, for the cubic one). The
 // quadratic one spans three nodes an axis. With f the particle's distance from its base node in cells, in
 // [1/2, 3/2): w = (3/2 - f)^2/2, 3/4 - (f - 1)^2, (f - 1/2)^2/2.
 // D = sum w (x_i - x_p)(x_i - x_p)^T is dx^2/4 I, whatever f (Jiang et al. 2015; Klar et al. 2016, eq. 8).

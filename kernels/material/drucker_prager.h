@@ -30,9 +30,9 @@ enum class ConeMatching {
 
 inline constexpr Choice kConeMatchings[] = {
     {"triaxial_compression", "Klar et al. 2016, eq. 31"},
-    {"plane_strain", "shear at constant volume in plane strain"},
-    {"plane_strain_associated", "plane strain with associated flow, Bui et al. 2008"},
-    {"two_dimensional", "the two-dimensional law, Klar et al. 2016 supplement, eq. 32"},
+    {"plane_strain", "in plane strain, as this law flows: at constant volume"},
+    {"plane_strain_associated", "Bui et al. 2008; for flow that dilates, so here it acts a little lower (30 as 28.7)"},
+    {"two_dimensional", "the slope of the 2D law, Klar et al. 2016 supplement, eq. 32; in plane strain far stronger (30 as 48.6)"},
 };
 
 /// Dry sand.

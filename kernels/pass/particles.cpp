@@ -75,7 +75,7 @@ std::size_t inspect(const T* const velocity[3], const T* const affine[9], std::s
 }
 
 /// eps <- eps + (vc/3) I before the return map; the trace of the trial strain is kept for the second half
-/// (Tampubolon et al. 2017, eq. 26).
+/// (Tampubolon et al. 2017, eq. 27).
 template <class T>
 void open_volume(T* const strain[6], const T* gained, T* trace_of_trial, std::size_t count) {
   using P = Pack<T>;
@@ -92,7 +92,7 @@ void open_volume(T* const strain[6], const T* gained, T* trace_of_trial, std::si
   }
 }
 
-/// vc <- vc + tr(trial) - tr(H) after it, with the sign that keeps tr(H) + vc what tr(trial) + vc was.
+/// vc <- vc + tr(trial) - tr(H) after it (eq. 26), with the sign that keeps tr(H) + vc what tr(trial) + vc was.
 template <class T>
 void close_volume(const T* const strain[6], T* gained, const T* trace_of_trial, std::size_t count) {
   using P = Pack<T>;

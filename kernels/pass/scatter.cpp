@@ -1,5 +1,5 @@
 // Repose: particles to nodes. Node i of the stencil receives mass w m and momentum
-//   w (m v + (m C - dt V0 D^-1 tau)(x_i - x_p))          (Klar et al. 2016, eqs. 7-9; Hu et al. 2018, eq. 23)
+//   w (m v + (m C - dt V0 D^-1 tau)(x_i - x_p))          (Klar et al. 2016, eqs. 7-9; the stress term of Hu et al. 2018)
 // as rows of four nodes. Particles with one base node (a run) add up in registers and touch memory once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"

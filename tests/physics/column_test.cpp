@@ -1,0 +1,117 @@
+// Repose tests: run-out of collapsing columns against the laws of experiments. Axisymmetric: Lube et al. 2004,
+// (r_end - r_0)/r_0 = 1.24 a below a = 1.7, 1.6 sqrt(a) above. Plane: Lube et al. 2005, 1.2 a, and Lajeunesse
+// et al. 2005, 1.8 a, for columns of a = 2. A measure that would also pass glue is none: sand of 65 degrees
+// must fail.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/physics/physics_probe.h"
+
+namespace repose {
+namespace {
+
+constexpr double kGravity = 9.81, kRadius = 0.3;
+
+double lube(double aspect) {
+  return aspect < 1.7 ? 1.24 * aspect : 1.6 * std::sqrt(aspect);
+}
+
+/// Kinetic energy over the potential energy of the column's first height: what is left of the motion.
+double motion_left(const Diagnostics& d, double height) {
+  return d.kinetic_energy / (d.mass * kGravity * 0.5 * height);
+}
+
+/// (r_end - r_0)/r_0 after the column has come to rest. A column that hardly yields goes on swinging: then the front
+/// is that of the moment.
+double axisymmetric_runout(double aspect, const std::string& phi, bool rests = true) {
+  const Scene scene =
+      scene_file("column.json", {"parameters.aspect=" + std::to_string(aspect), "parameters.phi=" + phi});
+  const auto simulation = simulate(scene);
+  const double volume = particle_volume(scene, *simulation);
+  const double height = aspect * kRadius, unit = std::sqrt(height / kGravity);
+  const double start = front_radius(simulation->points(), volume, scene.grid.spacing);
+  EXPECT_NEAR(start, kRadius, 1.5 * scene.grid.spacing);
+  EXPECT_TRUE(run_until(*simulation, 4.0 * unit));
+  const double before = front_radius(simulation->points(), volume, scene.grid.spacing);
+  EXPECT_TRUE(run_until(*simulation, 5.0 * unit));
+  const double end = front_radius(simulation->points(), volume, scene.grid.spacing);
+  if (rests) {
+    EXPECT_LE(std::abs(end - before), 1.5 * scene.grid.spacing) << "the front still moves";
+    EXPECT_LT(motion_left(simulation->diagnose(), height), 1e-2);
+  }
+  const double ring = front_ring(simulation->points(), volume, scene.grid.spacing);
+  report("column_runout_by_rings_over_lube", (ring - kRadius) / kRadius / lube(aspect));
+  return (end - kRadius) / kRadius;
+}
+
+void expect_lube(double aspect) {
+  const double runout = axisymmetric_runout(aspect, "30");
+  report("column_runout", runout);
+  report("column_runout_over_lube", runout / lube(aspect));
+  EXPECT_GE(runout, 0.75 * lube(aspect));
+  EXPECT_LE(runout, 1.35 * lube(aspect));
+}
+
+TEST(ColumnCollapse, AxisymmetricAspectHalf_RunsAsLubeSays) {
+  expect_lube(0.5);
+}
+TEST(ColumnCollapse, AxisymmetricAspectOne_RunsAsLubeSays) {
+  expect_lube(1.0);
+}
+TEST(ColumnCollapse, AxisymmetricAspectTwo_RunsAsLubeSays) {
+  expect_lube(2.0);
+}
+
+TEST(ColumnCollapse, AxisymmetricFrictionAngle65_IsRejected) {
+  for (const double aspect : {0.5, 1.0, 2.0}) {
+    const double runout = axisymmetric_runout(aspect, "65", false);
+    report("column_runout_phi_65_over_lube", runout / lube(aspect));
+    EXPECT_TRUE(runout < 0.75 * lube(aspect) || runout > 1.35 * lube(aspect));
+  }
+}
+
+/// One half of a plane column, against a wall that it slides down on.
+constexpr const char* kPlane = R"json({"repose": 1, "name": "plane_column",
+  "parameters": {"aspect": 2, "length": 0.1, "cells": 32, "phi": 30},
+  "grid": {"spacing": "= length / cells", "plane_strain": "z"},
+  "materials": {"sand": {"type": "drucker_prager", "friction_angle": "= phi", "cone_matching": "plane_strain"}},
+  "bodies": [{"name": "column", "material": "sand",
+              "shape": {"type": "box", "lower": [0, 0, -1], "upper": ["= length", "= aspect * length", 1]}}],
+  "colliders": [
+    {"name": "floor", "shape": {"type": "plane"}, "friction": "= tan(30 * deg)"},
+    {"name": "wall", "shape": {"type": "plane", "normal": [1, 0, 0]}, "contact": "slip"}]})json";
+
+double plane_runout(const std::string& phi, double& height) {
+  const Scene scene = scene_of(kPlane, {"parameters.phi=" + phi});
+  const auto simulation = simulate(scene);
+  const double volume = std::pow(scene.grid.spacing, 3) / 8.0;
+  const double unit = std::sqrt(0.2 / kGravity);
+  EXPECT_TRUE(run_until(*simulation, 5.0 * unit));
+  const double before = front_length(simulation->points(), volume, scene.grid.spacing);
+  EXPECT_TRUE(run_until(*simulation, 7.0 * unit));
+  const PointCloud points = simulation->points();
+  const double end = front_length(points, volume, scene.grid.spacing);
+  EXPECT_LE(std::abs(end - before), 2.01 * scene.grid.spacing) << "the front still moves";
+  height = simulation->diagnose().upper[1] / 0.1;
+  return (end - 0.1) / 0.1;
+}
+
+TEST(ColumnCollapse, PlaneStrainAspectTwo_RunsBetweenLubeAndLajeunesse) {
+  double height = 0.0;
+  const double runout = plane_runout("30", height);
+  report("plane_column_runout", runout);
+  report("plane_column_height", height);
+  EXPECT_GE(runout, 0.85 * 2.40);
+  EXPECT_LE(runout, 1.25 * 3.60);
+}
+
+TEST(ColumnCollapse, PlaneStrainFrictionAngle65_IsRejected) {
+  double height = 0.0;
+  const double runout = plane_runout("65", height);
+  report("plane_column_runout_phi_65", runout);
+  EXPECT_TRUE(runout < 0.85 * 2.40 || runout > 1.25 * 3.60);
+}
+
+}  // namespace
+}  // namespace repose

@@ -1,0 +1,149 @@
+// Repose tests: each limit of the time step binds when it should and under its name, and frames end exactly.
+#include "engine/step/time_step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/physics/physics_probe.h"
+
+namespace repose {
+namespace {
+
+constexpr double kNoFrame = std::numeric_limits<double>::infinity();
+constexpr double kSpacing = 0.01;
+
+/// Sound would allow 5e-4 s, a particle alone 6e-4 s, and the scene 1 s.
+StepLimits limits() {
+  StepLimits result;
+  result.max_step = 1.0;
+  result.cfl = 0.6;
+  result.sound = 0.5;
+  result.isolated = 0.9;
+  result.strain = 0.5;
+  result.sets = {{10.0, 15.0}};
+  return result;
+}
+
+StepSize choose(const StepLimits& given, const Counters& counters, double remaining = kNoFrame) {
+  return choose_step(given, TransferConstants{}, kSpacing, counters, remaining);
+}
+
+TEST(TimeStep, MatterAtRest_SoundBinds) {
+  const StepSize step = choose(limits(), {});
+  EXPECT_EQ(step.limit, Limit::kSound);
+  EXPECT_STREQ(limit_name(step.limit), "sound");
+  EXPECT_DOUBLE_EQ(step.dt, 0.5 * kSpacing / 10.0);
+}
+
+TEST(TimeStep, SeveralMaterials_StiffestBinds) {
+  StepLimits given = limits();
+  given.sets.push_back({40.0, 55.0});
+  EXPECT_DOUBLE_EQ(choose(given, {}).dt, 0.5 * kSpacing / 40.0);
+}
+
+TEST(TimeStep, MaxStepShorter_MaxStepBinds) {
+  StepLimits given = limits();
+  given.max_step = 1e-5;
+  const StepSize step = choose(given, {});
+  EXPECT_EQ(step.limit, Limit::kMaxStep);
+  EXPECT_STREQ(limit_name(step.limit), "max_step");
+  EXPECT_EQ(step.dt, 1e-5);
+}
+
+TEST(TimeStep, LooseSound_IsolatedBinds) {
+  StepLimits given = limits();
+  given.sound = 1.0;
+  const StepSize step = choose(given, {});
+  EXPECT_EQ(step.limit, Limit::kIsolated);
+  EXPECT_STREQ(limit_name(step.limit), "isolated");
+  // In the MLS form a dt/dx <= 1 for APIC with the quadratic stencil.
+  EXPECT_DOUBLE_EQ(step.dt, 0.9 * kSpacing / 15.0);
+}
+
+TEST(TimeStep, FastMatterOrFastSolid_VelocityBinds) {
+  Counters fast;
+  fast.max_speed = 50.0;
+  const StepSize of_matter = choose(limits(), fast);
+  EXPECT_EQ(of_matter.limit, Limit::kVelocity);
+  EXPECT_STREQ(limit_name(of_matter.limit), "velocity");
+  EXPECT_DOUBLE_EQ(of_matter.dt, 0.6 * kSpacing / 50.0);
+  StepLimits given = limits();
+  given.solid_speed = 100.0;
+  EXPECT_DOUBLE_EQ(choose(given, fast).dt, 0.6 * kSpacing / 100.0);
+}
+
+TEST(TimeStep, SteepGradient_StrainBinds) {
+  Counters sheared;
+  sheared.max_gradient = 2000.0;
+  const StepSize step = choose(limits(), sheared);
+  EXPECT_EQ(step.limit, Limit::kStrain);
+  EXPECT_STREQ(limit_name(step.limit), "strain");
+  EXPECT_DOUBLE_EQ(step.dt, 0.5 / 2000.0);
+}
+
+TEST(TimeStep, SlowMatter_VelocityAndStrainDoNotBind) {
+  Counters slow;
+  slow.max_speed = 0.1;
+  slow.max_gradient = 1.0;
+  EXPECT_EQ(choose(limits(), slow).limit, Limit::kSound);
+}
+
+TEST(TimeStep, LittleLeftOfFrame_FrameBinds) {
+  const StepSize step = choose(limits(), {}, 1e-4);
+  EXPECT_EQ(step.limit, Limit::kFrame);
+  EXPECT_STREQ(limit_name(step.limit), "frame");
+  EXPECT_EQ(step.dt, 1e-4);
+  EXPECT_DOUBLE_EQ(step.allowed, 5e-4);
+}
+
+TEST(TimeStep, FrameNotDivisible_EqualStepsFillIt) {
+  const double remaining = 0.01 / 3.0;  // 6.67 steps of 5e-4
+  const StepSize step = choose(limits(), {}, remaining);
+  EXPECT_EQ(step.limit, Limit::kSound) << "the frame shortens the step a little, but sound is why it is short";
+  EXPECT_DOUBLE_EQ(step.dt, remaining / 7.0);
+}
+
+TEST(TimeStep, FrameOfWholeSteps_RoundingCostsNoStep) {
+  const double remaining = 4.0 * 5e-4 * (1.0 + 4e-16);
+  EXPECT_DOUBLE_EQ(choose(limits(), {}, remaining).dt, 5e-4);
+}
+
+/// A small block on a floor; sound allows 3.4e-4 s, and no frame rate below divides it.
+constexpr const char* kBlock = R"json({"repose": 1, "name": "block", "grid": {"spacing": 0.01},
+  "time": {"frames_per_second": 24},
+  "materials": {"sand": {"type": "drucker_prager"}},
+  "bodies": [{"name": "block", "material": "sand",
+              "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.04, 0.04, 0.04]}}],
+  "colliders": [{"name": "floor", "shape": {"type": "plane"}, "friction": 0.5}]})json";
+
+TEST(TimeStep, FrameRates_FramesEndExactly) {
+  for (const double fps : {24.0, 29.97, 30.0, 48.0, 1000.0 / 7.0, 9999.0}) {
+    const auto simulation = simulate(scene_of(kBlock, {"time.frames_per_second=" + std::to_string(fps)}), 1);
+    const double given = std::stod(std::to_string(fps));
+    for (int frame = 1; frame <= 5; ++frame) {
+      const auto report = simulation->advance_frame();
+      ASSERT_TRUE(report) << report.error().text();
+      EXPECT_EQ(report->frame, frame);
+      EXPECT_EQ(report->time, frame / given) << fps;
+      EXPECT_EQ(simulation->counters().time_in_frame, 0.0);
+      EXPECT_LE(report->largest_dt, 3.4e-4);
+      EXPECT_EQ(report->steps, static_cast<std::int64_t>(std::ceil(1.0 / given / report->largest_dt - 1e-6)))
+          << "steps of a frame are equal, so no sliver is left at its end, " << fps;
+    }
+  }
+}
+
+TEST(TimeStep, FrameShorterThanAnyStep_Ends) {
+  const auto simulation = simulate(scene_of(kBlock, {"time.frames_per_second=1e12"}), 1);
+  for (int frame = 1; frame <= 3; ++frame) {
+    const auto report = simulation->advance_frame();
+    ASSERT_TRUE(report) << report.error().text();
+    EXPECT_EQ(report->steps, 1);
+    EXPECT_EQ(report->time, frame / 1e12);
+  }
+}
+
+}  // namespace
+}  // namespace repose
