@@ -25,7 +25,8 @@ Result<SimulationOptions> simulation_options(const SceneArguments& arguments) {
       return options;
     }
   }
-  return Error{ErrorKind::kUsage, "'" + arguments.target + "' is not one of avx512, avx2, baseline", "--target"};
+  return Error{ErrorKind::kUsage, "'" + arguments.target + "' is not one of avx512, avx2, baseline",
+               "--target"};
 }
 
 }  // namespace repose

@@ -14,10 +14,10 @@ namespace repose {
 /// What every command that takes a scene understands.
 struct SceneArguments {
   std::string scene;
-  std::vector<std::string> set;   ///< --set a.b=value
+  std::vector<std::string> set;  ///< --set a.b=value
   bool allow_outside_paths = false;
-  int threads = 0;                ///< 0: all
-  std::string target;             ///< avx512, avx2, baseline; empty: the best
+  int threads = 0;     ///< 0: all
+  std::string target;  ///< avx512, avx2, baseline; empty: the best
 };
 
 struct RunArguments {

@@ -24,8 +24,8 @@ void print_points(const std::string& path, const PointCloud& points) {
   }
   std::printf("%s: %zu points, spacing %g m\n", path.c_str(), points.size(), points.spacing);
   if (points.size() == 0) return;
-  std::printf("  bounds  (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m\n", lower[0], lower[1], lower[2], upper[0], upper[1],
-              upper[2]);
+  std::printf("  bounds  (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m\n", lower[0], lower[1], lower[2], upper[0],
+              upper[1], upper[2]);
   std::printf("  fastest %.4g m/s\n  attributes P v id pscale", fastest);
   for (const PointAttribute& attribute : points.attributes) std::printf(" %s", attribute.name.c_str());
   std::printf("\n");
@@ -47,10 +47,11 @@ int print_run(const std::string& folder) {
     at = frame["frame"].asInt64();
     solid = frame["deepest"]["solid"].asString();
   }
-  std::printf("%s: run of %s by Repose %s, %s, %d threads: %s\n", folder.c_str(), (*log)["scene"]["name"].asCString(),
-              (*log)["repose"].asCString(), (*log)["target"].asCString(), (*log)["threads"].asInt(),
-              (*log)["end"].asCString());
-  std::printf("  frames  %u, %lld steps, %.1f s of computing\n", frames.size(), static_cast<long long>(steps), seconds);
+  std::printf("%s: run of %s by Repose %s, %s, %d threads: %s\n", folder.c_str(),
+              (*log)["scene"]["name"].asCString(), (*log)["repose"].asCString(), (*log)["target"].asCString(),
+              (*log)["threads"].asInt(), (*log)["end"].asCString());
+  std::printf("  frames  %u, %lld steps, %.1f s of computing\n", frames.size(), static_cast<long long>(steps),
+              seconds);
   if (!frames.empty()) {
     const Json::Value& last = frames[frames.size() - 1];
     std::printf("  last    t %.4f s, %llu particles, %.6g kg, hash %s\n", last["time"].asDouble(),
@@ -60,7 +61,8 @@ int print_run(const std::string& folder) {
   if (solid.empty()) {
     std::printf("  deepest no particle was ever inside a solid\n");
   } else {
-    std::printf("  deepest %.3f cells inside '%s', at frame %lld\n", deepest, solid.c_str(), static_cast<long long>(at));
+    std::printf("  deepest %.3f cells inside '%s', at frame %lld\n", deepest, solid.c_str(),
+                static_cast<long long>(at));
   }
   return 0;
 }
@@ -68,10 +70,12 @@ int print_run(const std::string& folder) {
 int print_checkpoint(const std::string& path) {
   auto header = read_checkpoint_header(path);
   if (!header) return fail(header.error());
-  std::printf("%s: checkpoint after frame %lld and step %lld, t %.6f s\n  %llu particles, %s precision, scene %s\n",
-              path.c_str(), static_cast<long long>(header->counters.frame), static_cast<long long>(header->counters.step),
-              header->counters.time, static_cast<unsigned long long>(header->particles),
-              header->precision_bytes == 4 ? "single" : "double", header->scene_hash.c_str());
+  std::printf(
+      "%s: checkpoint after frame %lld and step %lld, t %.6f s\n  %llu particles, %s precision, scene %s\n",
+      path.c_str(), static_cast<long long>(header->counters.frame),
+      static_cast<long long>(header->counters.step), header->counters.time,
+      static_cast<unsigned long long>(header->particles), header->precision_bytes == 4 ? "single" : "double",
+      header->scene_hash.c_str());
   return 0;
 }
 

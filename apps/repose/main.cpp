@@ -1,6 +1,6 @@
 // Repose: the command.
-#include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <thread>
@@ -13,11 +13,13 @@ namespace {
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (JSON)")->required();
   // One word each: `--set a=1 scene.json` must not take the scene for a second override.
-  command.add_option("--set", arguments.set, "override a key: a.b=value; may be given again")->allow_extra_args(false);
+  command.add_option("--set", arguments.set, "override a key: a.b=value; may be given again")
+      ->allow_extra_args(false);
   command.add_flag("--allow-outside-paths", arguments.allow_outside_paths,
                    "allow meshes outside the scene's folder");
   command.add_option("--threads", arguments.threads, "threads (default: all)")->check(CLI::Range(1, 1024));
-  command.add_option("--target", arguments.target, "instruction set: avx512, avx2, baseline (default: the best)")
+  command
+      .add_option("--target", arguments.target, "instruction set: avx512, avx2, baseline (default: the best)")
       ->envname("REPOSE_TARGET");
 }
 
@@ -37,7 +39,8 @@ class Workers {
  public:
   explicit Workers(int threads)
       : control_(tbb::global_control::max_allowed_parallelism,
-                 static_cast<std::size_t>(std::max(threads, static_cast<int>(std::thread::hardware_concurrency())))) {}
+                 static_cast<std::size_t>(
+                     std::max(threads, static_cast<int>(std::thread::hardware_concurrency())))) {}
 
  private:
   tbb::global_control control_;
@@ -51,7 +54,8 @@ int main(int count, char** words) {
   int code = 0;
 
   RunArguments run;
-  CLI::App& run_app = *app.add_subcommand("run", "simulate a scene; caches, log and checkpoints go to a folder");
+  CLI::App& run_app =
+      *app.add_subcommand("run", "simulate a scene; caches, log and checkpoints go to a folder");
   add_scene_options(run_app, run.scene);
   run_app.add_option("--out", run.out, "folder (default: out/NAME)");
   run_app.add_option("--frames", run.frames, "A-B: write frames A to B; B: all up to B");
@@ -64,7 +68,8 @@ int main(int count, char** words) {
   });
 
   SceneArguments plan;
-  CLI::App& plan_app = *app.add_subcommand("plan", "the step that a scene compiles to; effects, memory and time");
+  CLI::App& plan_app =
+      *app.add_subcommand("plan", "the step that a scene compiles to; effects, memory and time");
   add_scene_options(plan_app, plan);
   plan_app.callback([&] { code = plan_command(plan); });
 
@@ -74,7 +79,8 @@ int main(int count, char** words) {
   check_app.callback([&] { code = check_command(check); });
 
   BenchArguments bench;
-  CLI::App& bench_app = *app.add_subcommand("bench", "time per phase, particle and step; hash of the end state");
+  CLI::App& bench_app =
+      *app.add_subcommand("bench", "time per phase, particle and step; hash of the end state");
   add_scene_options(bench_app, bench.scene);
   bench_app.add_option("--steps", bench.steps, "steps (default 100)")->check(CLI::Range(1, 1000000000));
   bench_app.add_option("--json", bench.json, "write the figures to a file");
@@ -116,4 +122,6 @@ int main(int count, char** words) {
 }  // namespace
 }  // namespace repose
 
-int main(int count, char** words) { return repose::main(count, words); }
+int main(int count, char** words) {
+  return repose::main(count, words);
+}

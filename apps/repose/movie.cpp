@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The caches of the frames from `first` to `last` that the log names: the folder may hold later ones of an earlier
-/// run, and none of frames that nobody asked to write.
+/// The caches of the frames from `first` to `last` that the log names: the folder may hold later ones of an
+/// earlier run, and none of frames that nobody asked to write.
 std::vector<std::string> cached_frames(const std::string& folder, const Json::Value& log, std::int64_t first,
                                        std::int64_t last) {
   std::vector<std::string> files;
@@ -78,7 +78,7 @@ Bounds bounds_of(const PointCloud& points) {
 std::vector<SolidMesh> draw_solids(const Scene& scene, const std::vector<Solid>& solids, double extent) {
   std::vector<SolidMesh> meshes;
   for (std::size_t k = 0; k < solids.size(); ++k) {
-    const Collider& collider = scene.colliders[k];
+    const Collider& collider = scene.effect<Colliders>().list[k];
     if (collider.appearance == Appearance::kHidden) continue;
     const bool glass = collider.appearance == Appearance::kGlass ||
                        (collider.appearance == Appearance::kAuto && collider.hollow);
@@ -105,7 +105,8 @@ Camera choose_camera(const Scene& scene, const std::vector<Solid>& solids, const
   }
   Bounds bounds = material;
   for (std::size_t k = 0; k < solids.size(); ++k) {
-    if (scene.colliders[k].hollow && solids[k].shape->bounds().upper.allFinite()) include(bounds, solids[k].shape->bounds());
+    if (scene.effect<Colliders>().list[k].hollow && solids[k].shape->bounds().upper.allFinite())
+      include(bounds, solids[k].shape->bounds());
   }
   const Vec3 direction = scene.up == UpAxis::kY ? Vec3(0.45, 0.32, 1.0) : Vec3(0.45, -1.0, 0.32);
   camera.target = 0.5 * (bounds.lower + bounds.upper);
@@ -133,14 +134,16 @@ Result<Shoot> prepare(const MovieArguments& arguments) {
   std::stringstream text;
   text << file.rdbuf();
   // The meshes that the scene names lie where the scene did.
-  auto scene = read_scene_text(text.str(), arguments.folder + "/scene.json", (*log)["scene"]["folder"].asString(),
-                               ReadOptions{{}, true});
+  auto scene = read_scene_text(text.str(), arguments.folder + "/scene.json",
+                               (*log)["scene"]["folder"].asString(), ReadOptions{{}, true});
   if (!scene) return scene.error();
   auto solids = build_solids(*scene, true);
   if (!solids) return solids.error();
-  Shoot shoot{std::move(*scene), std::move(*solids), cached_frames(arguments.folder, *log, arguments.first, last)};
+  Shoot shoot{std::move(*scene), std::move(*solids),
+              cached_frames(arguments.folder, *log, arguments.first, last)};
   if (shoot.frames.empty()) {
-    return Error{ErrorKind::kNoInput, "holds no points for these frames; was the run made with output.vdb or output.ply?",
+    return Error{ErrorKind::kNoInput,
+                 "holds no points for these frames; was the run made with output.vdb or output.ply?",
                  arguments.folder};
   }
   return shoot;

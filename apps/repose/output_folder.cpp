@@ -27,21 +27,25 @@ OutputFolder::~OutputFolder() {
 Result<OutputFolder> OutputFolder::open(const std::string& folder, const std::string& name) {
   std::error_code failure;
   fs::create_directories(folder, failure);
-  if (failure) return Error{ErrorKind::kCannotCreate, "cannot be made: " + failure.message() + "; choose another --out", folder};
+  if (failure)
+    return Error{ErrorKind::kCannotCreate, "cannot be made: " + failure.message() + "; choose another --out",
+                 folder};
   const std::string lock_path = folder + "/.lock";
   const int lock = ::open(lock_path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
   if (lock < 0) {
-    return Error{ErrorKind::kCannotCreate, std::string("cannot be written: ") + std::strerror(errno) + "; choose another --out",
-                 folder};
+    return Error{ErrorKind::kCannotCreate,
+                 std::string("cannot be written: ") + std::strerror(errno) + "; choose another --out", folder};
   }
   if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
     close(lock);
-    return Error{ErrorKind::kInUse, "another run is writing there; wait for it or choose another --out", folder};
+    return Error{ErrorKind::kInUse, "another run is writing there; wait for it or choose another --out",
+                 folder};
   }
   return OutputFolder(folder, name, lock);
 }
 
-std::string OutputFolder::frame(const std::string& kind, std::int64_t number, const std::string& extension) const {
+std::string OutputFolder::frame(const std::string& kind, std::int64_t number,
+                                const std::string& extension) const {
   char digits[24];
   std::snprintf(digits, sizeof digits, "%04lld", static_cast<long long>(number));
   return folder_ + "/" + name_ + "." + kind + "." + digits + "." + extension;

@@ -10,7 +10,8 @@ namespace repose {
 
 class OutputFolder {
  public:
-  /// Makes the folder and locks it for this process. Errors: 73 it cannot be made or written, 75 another run has it.
+  /// Makes the folder and locks it for this process. Errors: 73 it cannot be made or written, 75 another run
+  /// has it.
   static Result<OutputFolder> open(const std::string& folder, const std::string& name);
   OutputFolder(OutputFolder&& other) noexcept;
   OutputFolder& operator=(OutputFolder&&) = delete;

@@ -53,8 +53,8 @@ void print_forecast(const Scene& scene, const Simulation& simulation) {
   std::printf("  particles           %zu\n", simulation.particles());
   std::printf("  bytes per particle  %zu\n", bytes_per_particle(scene));
   std::printf("  memory              %.1f MB particles and order, %.1f MB grid (%zu blocks at the start)\n",
-              1e-6 * particles * static_cast<double>(bytes_per_particle(scene)), 1e-6 * static_cast<double>(memory.grid_bytes),
-              memory.blocks);
+              1e-6 * particles * static_cast<double>(bytes_per_particle(scene)),
+              1e-6 * static_cast<double>(memory.grid_bytes), memory.blocks);
   std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
   std::printf("  time                about %.0f s on %d thread%s\n",
               steps * particles * kNanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
@@ -71,7 +71,8 @@ int plan_command(const SceneArguments& arguments) {
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
   std::printf("%s: dx %g m, %s precision, %s\n", scene->name.c_str(), scene->grid.spacing,
-              scene->grid.precision == Precision::kSingle ? "single" : "double", target_name((*simulation)->target()));
+              scene->grid.precision == Precision::kSingle ? "single" : "double",
+              target_name((*simulation)->target()));
   print_effects(*scene);
   print_passes(**simulation);
   print_forecast(*scene, **simulation);
@@ -87,12 +88,15 @@ int check_command(const SceneArguments& arguments) {
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
   for (const MaterialDescription& material : scene->materials) {
-    if (material.type != MaterialType::kDruckerPrager) continue;
-    const double alpha = material.drucker_prager.cone_slope();
+    const auto* sand = std::get_if<DruckerPragerParameters>(&material.parameters);
+    if (sand == nullptr) continue;
+    const double alpha = sand->cone_slope();
     if (3.0 * alpha / std::sqrt(2.0) >= 1.0) {
-      std::printf("warning: materials.%s: with friction_angle %g and this cone_matching the sand can never yield in plane "
-                  "strain; see docs/math.md on cone matching\n",
-                  material.name.c_str(), material.drucker_prager.friction_angle);
+      std::printf(
+          "warning: materials.%s: with friction_angle %g and this cone_matching the sand can never yield in "
+          "plane "
+          "strain; see docs/math.md on cone matching\n",
+          material.name.c_str(), sand->friction_angle);
     }
   }
   std::printf("%s: good; %zu particles\n", arguments.scene.c_str(), (*simulation)->particles());

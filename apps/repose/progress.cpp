@@ -22,7 +22,9 @@ std::string clock_text(double seconds) {
 Progress::Progress(std::string label, double total, bool wanted)
     : label_(std::move(label)), total_(total), visible_(wanted && isatty(STDERR_FILENO) != 0) {}
 
-Progress::~Progress() { leave(); }
+Progress::~Progress() {
+  leave();
+}
 
 void Progress::leave() {
   if (visible_ && drawn_ != Clock::time_point{}) std::fputc('\n', stderr);
@@ -45,7 +47,8 @@ void Progress::finish(const std::string& detail) {
 }
 
 void Progress::draw(double done, const std::string& detail) {
-  if (first_done_ < 0.0) first_done_ = done;  // a resumed run starts late; only what it does itself tells its speed
+  if (first_done_ < 0.0)
+    first_done_ = done;  // a resumed run starts late; only what it does itself tells its speed
   constexpr int kWidth = 24;
   const double share = total_ > 0.0 ? std::clamp(done / total_, 0.0, 1.0) : 1.0;
   const int filled = static_cast<int>(share * kWidth);

@@ -36,7 +36,8 @@ Result<FrameRange> parse_frames(const std::string& text, std::int64_t frames) {
   const bool range = std::sscanf(text.c_str(), "%lld-%lld%c", &first, &last, &rest) == 2;
   const bool single = !range && (first = 1, std::sscanf(text.c_str(), "%lld%c", &last, &rest) == 1);
   if ((!range && !single) || first < 1 || last < first) {
-    return Error{ErrorKind::kUsage, "'" + text + "' is not a range of frames; give A-B or B, counted from 1", "--frames"};
+    return Error{ErrorKind::kUsage, "'" + text + "' is not a range of frames; give A-B or B, counted from 1",
+                 "--frames"};
   }
   return FrameRange{first, last};
 }
@@ -89,7 +90,8 @@ Result<void> Run::resume() {
     if (loaded) {
       log_.continue_from(folder_.log(), simulation_->counters().frame);
       list_series();
-      if (!arguments_.json && !arguments_.quiet) std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
+      if (!arguments_.json && !arguments_.quiet)
+        std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
       return {};
     }
     if (loaded.error().kind != ErrorKind::kIo) return loaded;
@@ -116,12 +118,14 @@ Result<FrameReport> Run::advance(Progress& progress) {
     ++steps;
     if (progress.visible()) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const double ns = 1e9 * seconds / (static_cast<double>(steps) * static_cast<double>(simulation_->particles()));
+      const double ns =
+          1e9 * seconds / (static_cast<double>(steps) * static_cast<double>(simulation_->particles()));
       char detail[160];
-      std::snprintf(detail, sizeof detail, "frame %lld/%lld  step %lld  dt %.3g s (%s)  %zu particles  %zu blocks  %.0f ns",
+      std::snprintf(detail, sizeof detail,
+                    "frame %lld/%lld  step %lld  dt %.3g s (%s)  %zu particles  %zu blocks  %.0f ns",
                     static_cast<long long>(counters.frame) + 1, static_cast<long long>(frames_.last),
-                    static_cast<long long>(counters.step), step.dt, limit_name(step.limit), simulation_->particles(),
-                    simulation_->memory().blocks, ns);
+                    static_cast<long long>(counters.step), step.dt, limit_name(step.limit),
+                    simulation_->particles(), simulation_->memory().blocks, ns);
       progress.update(counters.time * fps, detail);
     }
     return g_signal == 0;
@@ -133,7 +137,8 @@ Result<void> Run::write_caches(std::int64_t frame) {
   if (!output.vdb && !output.ply && !output.vtp) return {};
   const PointCloud points = simulation_->points();
   if (output.vdb) {
-    if (auto written = write_vdb_points(points, folder_.frame("points", frame, "vdb")); !written) return written;
+    if (auto written = write_vdb_points(points, folder_.frame("points", frame, "vdb")); !written)
+      return written;
   }
   if (output.ply) {
     if (auto written = write_ply(points, folder_.frame("points", frame, "ply")); !written) return written;
@@ -167,7 +172,8 @@ void Run::tell(const FrameReport& frame, const Json::Value& row) const {
     std::fflush(stdout);
   } else if (!arguments_.quiet && isatty(STDERR_FILENO) == 0) {
     std::printf("frame %lld/%lld  t %.4f s  %lld steps  %.1f s\n", static_cast<long long>(frame.frame),
-                static_cast<long long>(frames_.last), frame.time, static_cast<long long>(frame.steps), frame.seconds);
+                static_cast<long long>(frames_.last), frame.time, static_cast<long long>(frame.steps),
+                frame.seconds);
     std::fflush(stdout);
   }
 }
@@ -214,8 +220,10 @@ int Run::interrupted() {
 int Run::stop(Error error) {
   log_.end(error.text());
   if (error.kind == ErrorKind::kPhysics) {
-    if (auto written = write_bundle(error); !written) fail(written.error());
-    else error.message += "; what led to it is in " + folder_.path() + "/diagnostics";
+    if (auto written = write_bundle(error); !written)
+      fail(written.error());
+    else
+      error.message += "; what led to it is in " + folder_.path() + "/diagnostics";
   }
   if (auto written = log_.write(folder_.log()); !written) fail(written.error());
   return fail(error);
@@ -225,7 +233,8 @@ int Run::go() {
   if (arguments_.resume) {
     if (auto resumed = resume(); !resumed) return fail(resumed.error());
   }
-  if (auto written = write_text(folder_.scene(), scene_.canonical + "\n"); !written) return fail(written.error());
+  if (auto written = write_text(folder_.scene(), scene_.canonical + "\n"); !written)
+    return fail(written.error());
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);

@@ -69,7 +69,8 @@ RunLog::RunLog(const Scene& scene, const Simulation& simulation) {
   log_["threads"] = simulation.threads();
   log_["scene"]["name"] = scene.name;
   log_["scene"]["hash"] = scene_hash(scene);
-  log_["scene"]["folder"] = std::filesystem::absolute(scene.folder.empty() ? "." : scene.folder).lexically_normal().string();
+  log_["scene"]["folder"] =
+      std::filesystem::absolute(scene.folder.empty() ? "." : scene.folder).lexically_normal().string();
   log_["scene"]["spacing"] = scene.grid.spacing;
   log_["scene"]["frames_per_second"] = scene.time.frames_per_second;
   log_["precision"] = scene.grid.precision == Precision::kSingle ? "single" : "double";
@@ -103,7 +104,8 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   row["redone"] = Json::Int64(frame.redone);
   row["solver_iterations"] = 0;  // explicit steps solve nothing
   row["seconds"]["wall"] = frame.seconds;
-  for (std::size_t k = 0; k < kPhaseNames.size(); ++k) row["seconds"][kPhaseNames[k]] = frame.profile.seconds[k];
+  for (std::size_t k = 0; k < kPhaseNames.size(); ++k)
+    row["seconds"][kPhaseNames[k]] = frame.profile.seconds[k];
   add_figures(simulation.diagnose(), log_["scene"]["spacing"].asDouble(), row);
   // Mass neither enters nor leaves: there is no emitter and no sink.
   row["ledger"]["emitted"] = 0.0;

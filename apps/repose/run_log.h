@@ -1,5 +1,5 @@
-// Repose: run.json, what a run says of itself: versions, scene, effects, and a row of figures for every frame. It is
-// rewritten whole after each frame, so a run that was killed leaves a log that ends with its last frame.
+// Repose: run.json, what a run says of itself: versions, scene, effects, and a row of figures for every frame.
+// It is rewritten whole after each frame, so a run that was killed leaves a log that ends with its last frame.
 #pragma once
 
 #include <json/value.h>

@@ -1,5 +1,5 @@
-// Repose: memory of channels and fields: 64-byte aligned, never initialised twice, zero beyond its size so that a
-// full register may be read at the end.
+// Repose: memory of channels and fields: 64-byte aligned, never initialised twice, zero beyond its size so that
+// a full register may be read at the end.
 #pragma once
 
 #include <cstddef>
@@ -54,7 +54,9 @@ class AlignedArray {
  private:
   static constexpr std::size_t kAlignment = 64;
   static constexpr std::size_t kPadding = 64;  // bytes
-  static constexpr std::size_t round_up(std::size_t bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; }
+  static constexpr std::size_t round_up(std::size_t bytes) {
+    return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+  }
 
   struct Free {
     void operator()(T* raw) const { std::free(raw); }

@@ -71,7 +71,7 @@ class Fields {
 
   /// A choice held by an enum whose values count from 0 in the order of `choices`.
   template <class Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void choice(const char* key, Enum& value, std::span<const Choice> choices, const char* meaning) {
     int index = static_cast<int>(value);
     choice(key, index, choices, meaning);

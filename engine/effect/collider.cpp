@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 
 namespace repose {
 namespace {
@@ -21,8 +22,6 @@ constexpr Choice kAppearances[] = {
     {"hidden", "not drawn"},
 };
 
-}  // namespace
-
 void describe(Fields& fields, Collider& collider) {
   fields.text("name", collider.name, "what messages and overrides call it; no two colliders share a name",
               true);
@@ -35,9 +34,10 @@ void describe(Fields& fields, Collider& collider) {
   fields.choice("appearance", collider.appearance, kAppearances, "how pictures show it");
 }
 
-/// A node is constrained as soon as the half cell around it reaches the solid. With the bare sign of its own distance
-/// the first constrained node lies up to a cell inside, and a particle drifts half a cell farther, to where its stencil
-/// has left the free nodes: 1.5 cells deep. So the wall is met half a cell early at most, and passed by one at most.
+/// A node is constrained as soon as the half cell around it reaches the solid. With the bare sign of its own
+/// distance the first constrained node lies up to a cell inside, and a particle drifts half a cell farther, to
+/// where its stencil has left the free nodes: 1.5 cells deep. So the wall is met half a cell early at most, and
+/// passed by one at most.
 constexpr double kNodeReach = 0.5;  // cells
 
 /// One node's place beside one solid.
@@ -51,9 +51,8 @@ template <class Real>
 class ContactTables {
  public:
   explicit ContactTables(std::vector<Solid> solids) : solids_(std::move(solids)) {
-    friction_ = std::any_of(solids_.begin(), solids_.end(), [](const Solid& s) {
-      return s.friction > 0.0 && s.contact != Contact::kSticky;
-    });
+    friction_ = std::any_of(solids_.begin(), solids_.end(),
+                            [](const Solid& s) { return s.friction > 0.0 && s.contact != Contact::kSticky; });
   }
 
   void follow_topology(State<Real>& state);
@@ -71,14 +70,15 @@ class ContactTables {
 
   std::vector<Solid> solids_;
   bool friction_ = false;
-  std::map<Index3, NearSolids> seen_;       // every block ever reached; entries stay where they are
+  std::map<Index3, NearSolids> seen_;        // every block ever reached; entries stay where they are
   std::vector<const NearSolids*> of_block_;  // per block of the grid; null where no solid is near
 };
 
 template <class Real>
 typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const State<Real>& state,
                                                                        const Index3& block) const {
-  // Half the diagonal of a block's nodes, the cell that a node may be predicted to move along each axis, its own reach.
+  // Half the diagonal of a block's nodes, the cell that a node may be predicted to move along each axis, its
+  // own reach.
   const double reach = ((1.5 + 1.0) * std::sqrt(3.0) + kNodeReach) * state.spacing;
   NearSolids near;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
@@ -159,8 +159,8 @@ void ContactTables<Real>::collide_node(const NearSolids& near, std::size_t node,
         }
         break;
       case Contact::kSeparating: {
-        // phi(x_i + dt v) >= min(phi(x_i), 0), with phi linear over the step: exact for planes, and for curved walls
-        // off by the sagitta of a path of one cell at most.
+        // phi(x_i + dt v) >= min(phi(x_i), 0), with phi linear over the step: exact for planes, and for curved
+        // walls off by the sagitta of a path of one cell at most.
         const Real allowed = std::min(at.distance, Real(0));
         const Real predicted = at.distance + dt * along;
         if (predicted < allowed) {
@@ -186,29 +186,30 @@ void ContactTables<Real>::collide_node(const NearSolids& near, std::size_t node,
   }
 }
 
-template <class Real>
-std::shared_ptr<ContactTables<Real>> make_contact_tables(std::vector<Solid> solids) {
-  return std::make_shared<ContactTables<Real>>(std::move(solids));
+}  // namespace
+
+void Colliders::declare(Fields& fields) {
+  fields.list("colliders", false, "solids that material runs into", [this](Fields& f) {
+    Collider collider;
+    describe(f, collider);
+    const bool taken =
+        std::any_of(list.begin(), list.end(), [&](const Collider& c) { return c.name == collider.name; });
+    f.check(!taken, "name", "\"" + collider.name + "\" is taken by another collider; choose another");
+    list.push_back(collider);
+  });
 }
 
 template <class Real>
-OrderPass<Real> near_solids_pass(std::shared_ptr<ContactTables<Real>> tables) {
-  return {{"nodes near solids", "colliders", {"topology"}, {"contacts"}},
-          [tables](State<Real>& state) { tables->follow_topology(state); }};
+void Colliders::add_to_nodes(Assembly<Real>& assembly) const {
+  const auto tables = std::make_shared<ContactTables<Real>>(assembly.solids);
+  assembly.plan.order.push_back({{"nodes near solids", "colliders", {"topology"}, {"contacts"}},
+                                 [tables](State<Real>& state) { tables->follow_topology(state); }});
+  assembly.plan.nodes.push_back(
+      {{"collide, friction", "colliders", {"node velocity", "contacts"}, {"node velocity", "v-tilde"}},
+       [tables](NodeBlock<Real>& block) { tables->collide(block); }});
 }
 
-template <class Real>
-NodePass<Real> collide_pass(std::shared_ptr<ContactTables<Real>> tables) {
-  return {{"collide, friction", "colliders", {"node velocity", "contacts"}, {"node velocity", "v-tilde"}},
-          [tables](NodeBlock<Real>& block) { tables->collide(block); }};
-}
-
-#define REPOSE_INSTANTIATE(Real)                                                          \
-  template std::shared_ptr<ContactTables<Real>> make_contact_tables(std::vector<Solid>);  \
-  template OrderPass<Real> near_solids_pass(std::shared_ptr<ContactTables<Real>>);        \
-  template NodePass<Real> collide_pass(std::shared_ptr<ContactTables<Real>>);
-REPOSE_INSTANTIATE(float)
-REPOSE_INSTANTIATE(double)
-#undef REPOSE_INSTANTIATE
+template void Colliders::add_to_nodes(Assembly<float>&) const;
+template void Colliders::add_to_nodes(Assembly<double>&) const;
 
 }  // namespace repose

@@ -1,26 +1,32 @@
 // Repose: volume correction for sand (Tampubolon et al. 2017, eqs. 26-27 with the sign that conserves
 // volume). Sand that opened in tension forgets by how much; this effect remembers it per particle and takes
-// the next compression from it first, so that a bed which was thrown and fell does not keep the bulk of its flight.
+// the next compression from it first, so that a bed which was thrown and fell does not keep the bulk of its
+// flight.
 #pragma once
 
 #include "engine/base/params.h"
-#include "engine/step/step_plan.h"
+#include "engine/effect/effect.h"
 
 namespace repose {
 
-struct VolumeCorrection {
-  bool enabled = false;  ///< set by the presence of the scene key "volume_correction"
+struct VolumeCorrection : Effect {
+  static constexpr const char* kName = "volume_correction";
+  /// The channel that remembers: log volume gained per particle.
+  static constexpr const char* kGained = "volume_gained";
+
+  bool enabled = false;  ///< set by the presence of the scene key
+
+  void declare(Fields& fields);
+  bool on() const { return enabled; }
+  std::string why() const { return enabled ? "key 'volume_correction'" : "no key 'volume_correction'"; }
+
+  std::vector<std::string> channels(bool yields) const {
+    return enabled && yields ? std::vector<std::string>{kGained} : std::vector<std::string>{};
+  }
+  template <class Real>
+  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
+  template <class Real>
+  void add_after_return(Assembly<Real>& assembly, std::size_t set) const;
 };
-
-void describe(Fields& fields, VolumeCorrection& correction);
-
-/// The channel that remembers, log volume gained per particle.
-inline constexpr const char* kVolumeGained = "volume_gained";
-
-/// The halves before and after the return map of a set; `channel` is the set's position among its extra channels.
-template <class Real>
-ParticlePass<Real> open_volume_pass(const StepPlan<Real>& plan, std::size_t channel);
-template <class Real>
-ParticlePass<Real> close_volume_pass(const StepPlan<Real>& plan, std::size_t channel);
 
 }  // namespace repose

@@ -1,4 +1,5 @@
-// Repose: the checkpoint file: a magic line, then chunks, each [name, size, checksum] and its bytes, little endian.
+// Repose: the checkpoint file: a magic line, then chunks, each [name, size, checksum] and its bytes, little
+// endian.
 #include "engine/io/checkpoint.h"
 
 #include <zlib.h>
@@ -130,9 +131,10 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
     return written;
   }
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    auto written = for_each_array(state.sets[k], k, [&](const std::string& name, const void* data, std::size_t bytes) {
-      return write_chunk(*file, name, data, bytes);
-    });
+    auto written =
+        for_each_array(state.sets[k], k, [&](const std::string& name, const void* data, std::size_t bytes) {
+          return write_chunk(*file, name, data, bytes);
+        });
     if (!written) return written;
   }
   return file->commit();
@@ -145,9 +147,10 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   auto head = read_head(*reader);
   if (!head) return head.error();
   if (scene_hash != head->scene_hash) {
-    return Error{ErrorKind::kBadScene,
-                 "belongs to another scene (hash " + std::string(head->scene_hash) + ", this one is " + scene_hash + ")",
-                 path};
+    return Error{
+        ErrorKind::kBadScene,
+        "belongs to another scene (hash " + std::string(head->scene_hash) + ", this one is " + scene_hash + ")",
+        path};
   }
   if (head->precision_bytes != sizeof(Real) || head->sets != static_cast<std::int32_t>(state.sets.size()) ||
       head->particles != state.particles()) {

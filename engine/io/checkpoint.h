@@ -1,5 +1,6 @@
-// Repose: a state on disk, bit for bit: every channel in the order in which it lies, the blocks, and the counters.
-// Loading never sorts and saving never orders, since re-blocking rounds: when it happens would change bits.
+// Repose: a state on disk, bit for bit: every channel in the order in which it lies, the blocks, and the
+// counters. Loading never sorts and saving never orders, since re-blocking rounds: when it happens would change
+// bits.
 #pragma once
 
 #include <string>
@@ -21,8 +22,8 @@ struct CheckpointHeader {
 template <class Real>
 Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_hash, const std::string& path);
 
-/// Fills a state that was compiled from the same scene. Errors: 66 no such file; 74 damaged, naming the chunk; 65 of
-/// another scene, precision or version, naming both.
+/// Fills a state that was compiled from the same scene. Errors: 66 no such file; 74 damaged, naming the chunk;
+/// 65 of another scene, precision or version, naming both.
 template <class Real>
 Result<void> load_checkpoint(const std::string& path, const std::string& scene_hash, State<Real>& state);
 

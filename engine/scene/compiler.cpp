@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -9,14 +10,13 @@
 #include "engine/geometry/seeding.h"
 #include "engine/state/block_order.h"
 #include "engine/step/transfer_stages.h"
-#include "kernels/layout/stencil.h"
 
 namespace repose {
 namespace {
 
 TransferConstants transfer_constants(const Scene& scene) {
-  return {static_cast<int>(scene.grid.stencil), static_cast<int>(scene.grid.transfer), QuadraticStencil::kBaseShift,
-          QuadraticStencil::kInverseD};
+  const StencilFigures& stencil = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)];
+  return {scene.grid.stencil, scene.grid.transfer, stencil.base_shift, stencil.inverse_d};
 }
 
 Topology make_topology(const Scene& scene) {
@@ -46,21 +46,15 @@ const MaterialDescription& material_of(const Scene& scene, int index) {
 
 template <class Real>
 MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const MaterialDescription& material) {
-  MaterialRuntime<Real> runtime{kernels.material[static_cast<int>(material.type)], nullptr};
-  switch (material.type) {
-    case MaterialType::kDruckerPrager:
-      runtime.constants = std::make_shared<DruckerPragerConstants<Real>>(material.drucker_prager);
-      break;
-    case MaterialType::kElastic:
-      runtime.constants = std::make_shared<HenckyConstants<Real>>(material.elastic.elasticity);
-      break;
-  }
+  MaterialRuntime<Real> runtime{kernels.material[material.law()], nullptr};
+  std::visit(
+      [&runtime](const auto& parameters) {
+        using Constants = typename std::decay_t<decltype(parameters)>::template Constants<Real>;
+        runtime.constants = std::make_shared<Constants>(parameters);
+      },
+      material.parameters);
   return runtime;
 }
-
-bool pulls(const Gravity& gravity) { return gravity.acceleration.squaredNorm() > 0.0; }
-
-bool yields(const MaterialDescription& material) { return material.type == MaterialType::kDruckerPrager; }
 
 /// Fills a set with the seeds of a body: rest, but for the body's motion.
 template <class Real>
@@ -93,13 +87,15 @@ double physical_memory() {
 
 /// Refuses, before anything is allocated, a body that would not fit.
 Result<void> check_memory(const Scene& scene, double particles, double limit) {
-  const double bytes = particles * static_cast<double>(bytes_per_particle(scene) + 40);  // 40: seeds, while they last
+  const double bytes =
+      particles * static_cast<double>(bytes_per_particle(scene) + 40);  // 40: seeds, while they last
   if (bytes <= limit && particles < 4.0e9) return {};
   const double allowed = std::min(limit / bytes, 4.0e9 / particles);
   char text[256];
-  std::snprintf(text, sizeof text,
-                "needs about %.1f GB for %.3g particles, and %.1f GB may be used; a spacing of %.3g m or more fits",
-                bytes * 1e-9, particles, limit * 1e-9, scene.grid.spacing / std::cbrt(allowed));
+  std::snprintf(
+      text, sizeof text,
+      "needs about %.1f GB for %.3g particles, and %.1f GB may be used; a spacing of %.3g m or more fits",
+      bytes * 1e-9, particles, limit * 1e-9, scene.grid.spacing / std::cbrt(allowed));
   return Error{ErrorKind::kMemory, text, "grid.spacing"};
 }
 
@@ -129,9 +125,10 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     const Bounds bounds = shapes[k]->bounds();
     ParticleSet<Real> set;
     set.material = material_index(scene, body.material);
-    if (scene.volume_correction.enabled && yields(material_of(scene, set.material))) {
-      set.extra.push_back({kVolumeGained, {}});
-    }
+    const bool yields = material_of(scene, set.material).yields();
+    for_each_effect(scene.effects, [&](const auto& effect) {
+      for (const std::string& channel : effect.channels(yields)) set.extra.push_back({channel, {}});
+    });
     fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), *seeds, next_id, set, cells.emplace_back());
     next_id += static_cast<std::uint32_t>(set.count);
     state.sets.push_back(std::move(set));
@@ -179,33 +176,33 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
   // Particles to nodes.
   for (const auto& set : state.sets) {
     const MaterialRuntime<Real> material = make_material(*plan.kernels, material_of(scene, set.material));
-    plan.scatter.push_back({stress_pass(material),             // tau of the strain
-                            scatter_pass(plan, lattice)});     // mass, momentum, and the impulse of tau
+    plan.scatter.push_back({stress_pass(material),          // tau of the strain
+                            scatter_pass(plan, lattice)});  // mass, momentum, and the impulse of tau
   }
 
   // Nodes.
-  plan.nodes.push_back(normalize_pass(plan));                  // v* = p/m
-  if (pulls(scene.gravity)) {
-    plan.nodes.push_back(gravity_pass(scene.gravity, plan));   // v* += dt g
-  }
-  if (!solids.empty()) {
-    const auto tables = make_contact_tables<Real>(solids);
-    plan.order.push_back(near_solids_pass(tables));            // distances and normals of nodes near solids
-    plan.nodes.push_back(collide_pass(tables));                // v* -> v-bar -> v-tilde
-  }
+  Assembly<Real> assembly{plan, state, solids};
+  plan.nodes.push_back(normalize_pass(plan));               // v* = p/m
+  for_each_effect(scene.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
+    if (effect.on()) effect.add_to_nodes(assembly);
+  });
 
   // Nodes to particles.
-  for (const auto& set : state.sets) {
-    const MaterialDescription& description = material_of(scene, set.material);
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    const MaterialDescription& description = material_of(scene, state.sets[k].material);
     const MaterialRuntime<Real> material = make_material(*plan.kernels, description);
     auto& passes = plan.gather.emplace_back();
-    passes.push_back(gather_pass(plan, lattice));              // v and C, of v-tilde where there is friction
-    passes.push_back(advance_pass(plan));                      // x += dt v-bar
-    passes.push_back(trial_pass(material));                    // strain of the step
-    const bool corrected = !set.extra.empty() && scene.volume_correction.enabled;
-    if (corrected) passes.push_back(open_volume_pass(plan, 0));
-    if (yields(description)) passes.push_back(project_pass(material));  // back to the yield surface
-    if (corrected) passes.push_back(close_volume_pass(plan, 0));
+    passes.push_back(gather_pass(plan, lattice));  // v and C, and the velocity that moves
+    passes.push_back(advance_pass(plan));          // x += dt v
+    passes.push_back(trial_pass(material));        // strain of the step
+    if (!description.yields()) continue;
+    for_each_effect(scene.effects, [&](const auto& effect) {
+      if (effect.on()) effect.add_before_return(assembly, k);
+    });
+    plan.gather[k].push_back(project_pass(material));  // back to the yield surface
+    for_each_effect(scene.effects, [&](const auto& effect) {
+      if (effect.on()) effect.add_after_return(assembly, k);
+    });
   }
   return plan;
 }
@@ -214,7 +211,7 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
 
 Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_paths) {
   std::vector<Solid> solids;
-  for (const Collider& collider : scene.colliders) {
+  for (const Collider& collider : scene.effect<Colliders>().list) {
     auto shape = make_shape(collider.shape, scene.folder, scene.grid.spacing, allow_outside_paths);
     if (!shape) return Error{shape.error().kind, shape.error().text(), "colliders." + collider.name + ".shape"};
     solids.push_back({collider.name, *shape, collider.hollow, collider.contact, collider.friction});
@@ -243,15 +240,16 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
 
 std::vector<EffectStatus> effect_status(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
-  const bool gravity = pulls(scene.gravity);
-  return {
-      {"gravity", gravity, gravity ? "gravity.acceleration is not zero" : "gravity.acceleration is zero", 0},
-      {"collider", !scene.colliders.empty(),
-       scene.colliders.empty() ? "no entry in 'colliders'" : std::to_string(scene.colliders.size()) + " in 'colliders'", 0},
-      {"volume_correction", scene.volume_correction.enabled,
-       scene.volume_correction.enabled ? "key 'volume_correction'" : "no key 'volume_correction'",
-       scene.volume_correction.enabled ? real : 0},
-  };
+  std::vector<EffectStatus> list;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    std::size_t channels = 0;  // of the set that has most
+    for (const BodyDescription& body : scene.bodies) {
+      const bool yields = material_of(scene, material_index(scene, body.material)).yields();
+      channels = std::max(channels, effect.channels(yields).size());
+    }
+    list.push_back({effect.kName, effect.on(), effect.why(), channels * real});
+  });
+  return list;
 }
 
 std::size_t bytes_per_particle(const Scene& scene) {

@@ -1,6 +1,6 @@
 // Repose: from a scene to something that runs: the initial state, and the step as a list of passes. The body of
-// compile_plan is the step's table of contents: one commented line for each thing that a scene can call for, and
-// nothing else decides the order.
+// compile_plan is the step's table of contents: one commented line for each thing that a scene can call for,
+// and nothing else decides the order.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/effect/collider.h"
+#include "engine/effect/solid.h"
 #include "engine/scene/scene.h"
 #include "engine/state/state.h"
 #include "engine/step/step_plan.h"
@@ -28,8 +28,8 @@ struct CompiledScene {
   std::vector<Solid> solids;
 };
 
-/// Builds shapes, seeds bodies, lists the passes. Errors: 65 geometry that is wrong or holds no particle, 66 a missing
-/// mesh, 78 a scene that will not fit in memory, with the spacing that would.
+/// Builds shapes, seeds bodies, lists the passes. Errors: 65 geometry that is wrong or holds no particle, 66 a
+/// missing mesh, 78 a scene that will not fit in memory, with the spacing that would.
 template <class Real>
 Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options);
 
@@ -40,7 +40,7 @@ Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_p
 struct EffectStatus {
   std::string name;
   bool on = false;
-  std::string reason;          ///< the key that asked for it, or what would
+  std::string reason;  ///< the key that asked for it, or what would
   std::size_t bytes_per_particle = 0;
 };
 std::vector<EffectStatus> effect_status(const Scene& scene);

@@ -12,12 +12,10 @@ namespace {
 
 constexpr Choice kUpAxes[] = {{"y", "y is up"}, {"z", "z is up"}};
 constexpr Choice kPrecisions[] = {{"single", "float, the fast one"}, {"double", "double, for reference"}};
-constexpr Choice kStencils[] = {{"quadratic", "quadratic B-spline, 27 nodes"}};
 constexpr Choice kAdvections[] = {
     {"after_friction", "the velocity that particles keep; what friction holds, rests"},
     {"before_friction", "as Klar et al. 2016; what friction holds creeps a little, by more in longer steps"},
 };
-constexpr Choice kTransfers[] = {{"apic", "affine particle-in-cell, Jiang et al. 2015"}};
 constexpr Choice kFlatAxes[] = {
     {"none", "three dimensions"}, {"x", "nothing varies along x"}, {"y", "along y"}, {"z", "along z"}};
 constexpr Choice kSamplings[] = {
@@ -70,9 +68,12 @@ void describe_grid(Fields& fields, GridDescription& grid) {
       "spacing", grid.spacing,
       {.unit = "m", .meaning = "distance between nodes, dx", .low = 0.0, .low_open = true, .required = true});
   fields.choice("precision", grid.precision, kPrecisions, "type of particle and node data");
-  fields.choice("stencil", grid.stencil, kStencils, "how a particle spreads over nodes");
-  fields.choice("transfer", grid.transfer, kTransfers, "how momentum moves between particles and nodes");
-  fields.choice("advection", grid.advection, kAdvections, "which velocity moves particles where there is friction");
+  std::vector<Choice> stencils;
+  for (const StencilFigures& stencil : kStencilFigures) stencils.push_back({stencil.name, stencil.meaning});
+  fields.choice("stencil", grid.stencil, stencils, "how a particle spreads over nodes");
+  fields.choice("transfer", grid.transfer, kTransferChoices, "how momentum moves between particles and nodes");
+  fields.choice("advection", grid.advection, kAdvections,
+                "which velocity moves particles where there is friction");
   fields.integers("origin_cells", grid.origin_cells,
                   {.unit = "cells",
                    .meaning = "where the scene's origin lies in the lattice; multiples of 8",
@@ -111,14 +112,21 @@ void describe_time(Fields& fields, TimeDescription& time) {
   share("strain", time.strain, "largest velocity gradient times step");
 }
 
+/// One alternative per material of the list; choosing one makes it the material's law.
+template <std::size_t... k>
+void describe_law(Fields& fields, MaterialParameters& law, std::index_sequence<k...>) {
+  const Alternative laws[] = {{std::variant_alternative_t<k, MaterialParameters>::kName,
+                               std::variant_alternative_t<k, MaterialParameters>::kMeaning, [&law](Fields& f) {
+                                 if (law.index() != k) law.emplace<k>();
+                                 std::get<k>(law).describe(f);
+                               }}...};
+  int chosen = static_cast<int>(law.index());
+  fields.alternatives(chosen, laws, "the law of the material");
+}
+
 void describe_material(Fields& fields, MaterialDescription& material) {
-  const Alternative types[] = {
-      {"drucker_prager", "dry sand", [&](Fields& f) { material.drucker_prager.describe(f); }},
-      {"elastic", "an elastic solid of Hencky strain", [&](Fields& f) { material.elastic.describe(f); }},
-  };
-  int chosen = static_cast<int>(material.type);
-  fields.alternatives(chosen, types, "the law of the material");
-  material.type = static_cast<MaterialType>(chosen);
+  describe_law(fields, material.parameters,
+               std::make_index_sequence<std::variant_size_v<MaterialParameters>>());
 }
 
 void describe_body(Fields& fields, BodyDescription& body) {
@@ -188,27 +196,21 @@ void describe_bodies(Fields& fields, Scene& scene) {
     for (const MaterialDescription& material : scene.materials) materials.push_back(material.name);
     f.check(materials.empty() || is_named(scene.materials, body.material), "material",
             "no material \"" + body.material + "\"; " + did_you_mean(body.material, materials));
+    if (scene.grid.plane_strain) {
+      const int flat = *scene.grid.plane_strain;
+      Vec3 turns = body.angular_velocity;
+      turns[flat] = 0.0;
+      f.check(body.velocity[flat] == 0.0, "velocity", "must be zero along the flat axis (plane_strain)");
+      f.check(turns.norm() == 0.0, "angular_velocity", "must be about the flat axis (plane_strain)");
+    }
     scene.bodies.push_back(body);
   });
 }
 
-void describe_colliders(Fields& fields, Scene& scene) {
-  fields.list("colliders", false, "solids that material runs into", [&](Fields& f) {
-    Collider collider;
-    describe(f, collider);
-    f.check(!is_named(scene.colliders, collider.name), "name",
-            "\"" + collider.name + "\" is taken by another collider; choose another");
-    scene.colliders.push_back(collider);
-  });
-}
-
-void describe_gravity(Fields& fields, Scene& scene) {
-  // Down follows `up` unless the scene, or a host that filled it, says otherwise.
-  const bool as_declared = scene.gravity.acceleration == Gravity{}.acceleration;
-  if (scene.up == UpAxis::kZ && as_declared) scene.gravity.acceleration = Vec3(0.0, 0.0, -9.81);
-  bool given = false;
-  fields.object("gravity", given, false, "a uniform acceleration; it acts also where the key is left out",
-                [&](Fields& f) { describe(f, scene.gravity); });
+/// Down follows `up` unless the scene, or a host that filled it, says otherwise.
+void turn_gravity(Scene& scene) {
+  Vec3& acceleration = scene.effect<Gravity>().acceleration;
+  if (scene.up == UpAxis::kZ && acceleration == Gravity{}.acceleration) acceleration = Vec3(0.0, 0.0, -9.81);
 }
 
 }  // namespace
@@ -234,12 +236,8 @@ void describe(Fields& fields, Scene& scene) {
                 [&](Fields& f) { describe_time(f, scene.time); });
   describe_materials(fields, scene);
   describe_bodies(fields, scene);
-  describe_colliders(fields, scene);
-  describe_gravity(fields, scene);
-  VolumeCorrection& correction = scene.volume_correction;
-  fields.object("volume_correction", correction.enabled, false,
-                "sand that opened in tension closes before it carries load again, Tampubolon et al. 2017",
-                [&](Fields& f) { describe(f, correction); });
+  turn_gravity(scene);
+  for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields); });
   fields.object("output", given, false, "what is written per frame",
                 [&](Fields& f) { describe_output(f, scene.output); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",

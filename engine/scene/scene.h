@@ -9,21 +9,17 @@
 
 #include "engine/base/params.h"
 #include "engine/base/result.h"
-#include "engine/effect/collider.h"
-#include "engine/effect/gravity.h"
-#include "engine/effect/volume_correction.h"
+#include "engine/effect/effects.h"
 #include "engine/geometry/seeding.h"
 #include "engine/geometry/shape.h"
-#include "kernels/material/drucker_prager.h"
-#include "kernels/material/hencky.h"
+#include "kernels/layout/stencil.h"
+#include "kernels/material/materials.h"
+#include "kernels/transfer/transfers.h"
 
 namespace repose {
 
 enum class UpAxis { kY, kZ };
 enum class Precision { kSingle, kDouble };
-enum class StencilKind { kQuadratic };
-enum class TransferKind { kApic };
-enum class MaterialType { kDruckerPrager, kElastic };
 
 /// A stretch of one axis after which space repeats, a multiple of 8 cells long.
 struct PeriodicAxis {
@@ -32,34 +28,38 @@ struct PeriodicAxis {
 };
 
 struct GridDescription {
-  double spacing = 0.01;               ///< dx, m
+  double spacing = 0.01;  ///< dx, m
   Precision precision = Precision::kSingle;
-  StencilKind stencil = StencilKind::kQuadratic;
-  TransferKind transfer = TransferKind::kApic;
+  int stencil = 0;   ///< position in Stencils
+  int transfer = 0;  ///< position in Transfers
   Advection advection = Advection::kAfterFriction;
-  std::array<std::int64_t, 3> origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice; multiples of 8
-  std::optional<int> plane_strain;     ///< the axis (0, 1, 2) across which nothing varies
+  std::array<std::int64_t, 3> origin_cells{
+      0, 0, 0};                     ///< where the scene's origin lies in the lattice; multiples of 8
+  std::optional<int> plane_strain;  ///< the axis (0, 1, 2) across which nothing varies
   std::array<PeriodicAxis, 3> periodic;
 };
 
 struct TimeDescription {
   std::int64_t frames = 48;
   double frames_per_second = 24.0;
-  double max_step = 1.0;               ///< s; an upper bound beside the limits below
-  double cfl = 0.6;                    ///< cells that matter may cross in a step
-  double sound = 0.5;                  ///< cells that a compression wave may cross in a step
-  double isolated = 0.9;               ///< share of the stability limit of one particle alone
-  double strain = 0.5;                 ///< largest velocity gradient times step
+  double max_step = 1.0;  ///< s; an upper bound beside the limits below
+  double cfl = 0.6;       ///< cells that matter may cross in a step
+  double sound = 0.5;     ///< cells that a compression wave may cross in a step
+  double isolated = 0.9;  ///< share of the stability limit of one particle alone
+  double strain = 0.5;    ///< largest velocity gradient times step
 };
 
 struct MaterialDescription {
   std::string name;
-  MaterialType type = MaterialType::kDruckerPrager;
-  DruckerPragerParameters drucker_prager;
-  HenckyParameters elastic;
+  MaterialParameters parameters;
 
+  /// Position in the list of materials.
+  int law() const { return static_cast<int>(parameters.index()); }
   const Elasticity& elasticity() const {
-    return type == MaterialType::kDruckerPrager ? drucker_prager.elasticity : elastic.elasticity;
+    return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
+  }
+  bool yields() const {
+    return std::visit([](const auto& p) { return std::decay_t<decltype(p)>::kYields; }, parameters);
   }
 };
 
@@ -76,7 +76,7 @@ struct BodyDescription {
 };
 
 struct OutputDescription {
-  bool vdb = true;   ///< NAME.points.####.vdb
+  bool vdb = true;  ///< NAME.points.####.vdb
   bool ply = false;
   bool vtp = false;
   bool checkpoint = true;  ///< a resumable state per frame, two kept
@@ -97,14 +97,22 @@ struct Scene {
   TimeDescription time;
   std::vector<MaterialDescription> materials;
   std::vector<BodyDescription> bodies;
-  std::vector<Collider> colliders;
-  Gravity gravity;
-  VolumeCorrection volume_correction;
+  Effects effects;
   OutputDescription output;
   CameraDescription camera;
 
+  template <class E>
+  E& effect() {
+    return std::get<E>(effects);
+  }
+  template <class E>
+  const E& effect() const {
+    return std::get<E>(effects);
+  }
+
   std::string folder;     ///< where relative paths start
-  std::string canonical;  ///< the scene as compact JSON after overrides and expressions; what is hashed and kept beside a run
+  std::string canonical;  ///< the scene as compact JSON after overrides and expressions; what is hashed and
+                          ///< kept beside a run
 };
 
 void describe(Fields& fields, Scene& scene);

@@ -82,11 +82,13 @@ Diagnostics empty_sums() {
 }  // namespace
 
 template <class Real>
-Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state, Threads& threads) {
+Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state,
+                     Threads& threads) {
   const auto owners = state.grid.owners();
   std::vector<Diagnostics> blocks(owners.size(), empty_sums());
-  // D of the quadratic stencil, dx^2/4: the second moment of a particle about its own position.
-  const double affine_inertia = 0.25 * state.spacing * state.spacing;
+  // D, the second moment of a stencil about its particle.
+  const double inverse_d = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)].inverse_d;
+  const double affine_inertia = state.spacing * state.spacing / inverse_d;
   const double block_radius = 0.5 * std::sqrt(3.0) * (kHighestBase - kLowestBase + 2) * state.spacing;
   threads.for_each(owners.size(), [&](std::size_t owner) {
     const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
@@ -96,8 +98,8 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
     for (const auto& set : state.sets) {
       const Elasticity& elasticity = elasticity_of(scene, set.material);
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-        const Vec3 x = state.world(block, {double(set.position[0][p]), double(set.position[1][p]),
-                                           double(set.position[2][p])});
+        const Vec3 x = state.world(
+            block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
         add_particle(set, p, elasticity, x, affine_inertia, blocks[owner]);
         if (near) note_depth(solids, x, set.id[p], blocks[owner]);
       }
@@ -106,7 +108,7 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
   Diagnostics sums = empty_sums();
   for (const Diagnostics& block : blocks) merge(block, sums);
   if (sums.mass > 0.0) sums.center_of_mass /= sums.mass;
-  sums.potential_energy = -sums.mass * scene.gravity.acceleration.dot(sums.center_of_mass);
+  sums.potential_energy = -sums.mass * scene.effect<Gravity>().acceleration.dot(sums.center_of_mass);
   return sums;
 }
 

@@ -1,5 +1,5 @@
-// Repose: figures of a state: energies, momenta, ledger, and how deep the deepest particle is in a solid. Sums run per
-// block in double and then over blocks in their order, so they do not depend on threads.
+// Repose: figures of a state: energies, momenta, ledger, and how deep the deepest particle is in a solid. Sums
+// run per block in double and then over blocks in their order, so they do not depend on threads.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
-#include "engine/effect/collider.h"
+#include "engine/effect/solid.h"
 #include "engine/scene/scene.h"
 #include "engine/state/state.h"
 
@@ -15,15 +15,15 @@ namespace repose {
 
 struct Diagnostics {
   std::uint64_t particles = 0;
-  double mass = 0.0;                    ///< kg
-  double volume = 0.0;                  ///< sum of V0 exp(tr eps): the volume as the elastic strain leaves it, m^3
-  double kinetic_energy = 0.0;          ///< of particle velocities, J
-  double affine_energy = 0.0;           ///< of the velocity gradients that APIC carries, J
-  double elastic_energy = 0.0;          ///< J
-  double potential_energy = 0.0;        ///< -m g . x with the scene's full gravity, J
-  Vec3 momentum{0, 0, 0};               ///< kg m/s
-  Vec3 angular_momentum{0, 0, 0};       ///< about the scene's origin, with the affine part, kg m^2/s
-  Vec3 center_of_mass{0, 0, 0};         ///< m
+  double mass = 0.0;               ///< kg
+  double volume = 0.0;             ///< sum of V0 exp(tr eps): the volume as the elastic strain leaves it, m^3
+  double kinetic_energy = 0.0;     ///< of particle velocities, J
+  double affine_energy = 0.0;      ///< of the velocity gradients that APIC carries, J
+  double elastic_energy = 0.0;     ///< J
+  double potential_energy = 0.0;   ///< -m g . x with the scene's full gravity, J
+  Vec3 momentum{0, 0, 0};          ///< kg m/s
+  Vec3 angular_momentum{0, 0, 0};  ///< about the scene's origin, with the affine part, kg m^2/s
+  Vec3 center_of_mass{0, 0, 0};    ///< m
   Vec3 lower{0, 0, 0}, upper{0, 0, 0};  ///< bounds of the particles, m
   double max_speed = 0.0;               ///< m/s
   double deepest = 0.0;                 ///< largest depth of a particle inside a solid, m; 0 if none is inside
@@ -40,6 +40,7 @@ struct MemoryUse {
 };
 
 template <class Real>
-Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state, Threads& threads);
+Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state,
+                     Threads& threads);
 
 }  // namespace repose

@@ -26,9 +26,9 @@ std::string describe_offender(const Offender& offender, const StepReport& report
                 "physics gave out: particle %u of '%s' at (%.4g, %.4g, %.4g) m %s, even in a step of %.3g s "
                 "(velocity %.3g m/s, trial %.3g m/s, det(I + dt grad v) = %.3g); smaller time.sound or a finer "
                 "grid.spacing may help",
-                offender.id, offender.set.c_str(), offender.position[0], offender.position[1], offender.position[2],
-                offender.reason.c_str(), report.dt, offender.velocity.norm(), offender.trial_velocity.norm(),
-                offender.determinant);
+                offender.id, offender.set.c_str(), offender.position[0], offender.position[1],
+                offender.position[2], offender.reason.c_str(), report.dt, offender.velocity.norm(),
+                offender.trial_velocity.norm(), offender.determinant);
   return text;
 }
 
@@ -47,7 +47,8 @@ class SimulationOf final : public Simulation {
   Result<StepReport> step() override {
     const StepReport report = stepper_.step(state_, std::numeric_limits<double>::infinity());
     offender_ = report.offender;
-    if (!report.accepted) return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+    if (!report.accepted)
+      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
     state_.counters.time += report.dt;
     return report;
   }
@@ -103,7 +104,8 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     const StepReport report = stepper_.step(state_, remaining);
     frame.redone += report.redone;
     offender_ = report.offender;
-    if (!report.accepted) return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+    if (!report.accepted)
+      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
     // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
     const bool last = report.dt >= remaining * (1.0 - 1e-9);
     counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;
@@ -138,19 +140,25 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
   cloud.id.resize(count);
   cloud.radius.resize(count);
   PointAttribute material{"material", 1, std::vector<float>(count)};
-  PointAttribute gained{kVolumeGained, 1, std::vector<float>(count)};
-  bool corrected = false;
+  std::vector<PointAttribute> extra;  // every channel of every set; zero where a set lacks it
+  const auto extra_of = [&](const std::string& name) -> std::vector<float>& {
+    for (PointAttribute& attribute : extra) {
+      if (attribute.name == name) return attribute.values;
+    }
+    extra.push_back({name, 1, std::vector<float>(count)});
+    return extra.back().values;
+  };
   const auto owners = state_.grid.owners();
   for (const auto& set : state_.sets) {
     // A sphere of half the particle's volume: grains that touch without hiding one another.
     const double radius = std::cbrt(3.0 / (4.0 * std::numbers::pi) * 0.5 * set.particle_volume);
-    const auto kind = static_cast<float>(scene_.materials[static_cast<std::size_t>(set.material)].type);
+    const auto kind = static_cast<float>(scene_.materials[static_cast<std::size_t>(set.material)].law());
     for (std::size_t owner = 0; owner < owners.size(); ++owner) {
       const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(owners[owner])];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
         const std::size_t at = set.id[p];  // ids count from 0 without gaps
-        const Vec3 x = state_.world(block, {double(set.position[0][p]), double(set.position[1][p]),
-                                            double(set.position[2][p])});
+        const Vec3 x = state_.world(
+            block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
         cloud.position[at] = {x[0], x[1], x[2]};
         for (std::size_t axis = 0; axis < 3; ++axis) {
           cloud.velocity[at][axis] = static_cast<float>(set.velocity[axis][p]);
@@ -158,15 +166,18 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
         cloud.id[at] = set.id[p];
         cloud.radius[at] = static_cast<float>(radius);
         material.values[at] = kind;
-        if (!set.extra.empty()) {
-          gained.values[at] = static_cast<float>(set.extra[0].values[p]);
-          corrected = true;
-        }
       }
     }
   }
   if (scene_.materials.size() > 1) cloud.attributes.push_back(std::move(material));
-  if (channels && corrected) cloud.attributes.push_back(std::move(gained));
+  for (const auto& set : state_.sets) {
+    if (!channels) break;
+    for (const auto& channel : set.extra) {
+      std::vector<float>& values = extra_of(channel.name);
+      for (std::size_t p = 0; p < set.count; ++p) values[set.id[p]] = static_cast<float>(channel.values[p]);
+    }
+  }
+  for (PointAttribute& attribute : extra) cloud.attributes.push_back(std::move(attribute));
   return cloud;
 }
 
@@ -186,9 +197,11 @@ std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes(
 
 template <class Real>
 Result<std::unique_ptr<Simulation>> create_of(const Scene& scene, const SimulationOptions& options) {
-  auto compiled = compile_scene<Real>(scene, {options.target, options.allow_outside_paths, options.memory_limit});
+  auto compiled =
+      compile_scene<Real>(scene, {options.target, options.allow_outside_paths, options.memory_limit});
   if (!compiled) return compiled.error();
-  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const int threads =
+      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   return std::unique_ptr<Simulation>(
       std::make_unique<SimulationOf<Real>>(scene, options, std::move(*compiled), std::max(1, threads)));
 }
@@ -198,14 +211,15 @@ Result<std::unique_ptr<Simulation>> create_of(const Scene& scene, const Simulati
 Result<std::unique_ptr<Simulation>> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   const CleanFloatingPoint clean;
   if (!target_supported(options.target)) {
-    return Error{ErrorKind::kUsage, std::string("this machine cannot run ") + target_name(options.target), "target"};
+    return Error{ErrorKind::kUsage, std::string("this machine cannot run ") + target_name(options.target),
+                 "target"};
   }
   try {
     if (scene.grid.precision == Precision::kDouble) return create_of<double>(scene, options);
     return create_of<float>(scene, options);
   } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::kMemory, "memory ran out while the scene was set up; a coarser grid.spacing needs less",
-                 scene.name};
+    return Error{ErrorKind::kMemory,
+                 "memory ran out while the scene was set up; a coarser grid.spacing needs less", scene.name};
   }
 }
 

@@ -10,7 +10,7 @@
 
 #include "engine/base/profile.h"
 #include "engine/base/result.h"
-#include "engine/effect/collider.h"
+#include "engine/effect/solid.h"
 #include "engine/io/point_cloud.h"
 #include "engine/scene/compiler.h"
 #include "engine/scene/scene.h"
@@ -50,14 +50,14 @@ class Simulation {
   /// One step of what the limits allow, ending on no frame. Error 70 as advance_frame.
   virtual Result<StepReport> step() = 0;
 
-  /// Steps to the end of the next frame. Error 70 when the physics gives out: the message names the particle and what
-  /// would happen to it; offender() tells more. The state is then that of the last accepted step.
+  /// Steps to the end of the next frame. Error 70 when the physics gives out: the message names the particle
+  /// and what would happen to it; offender() tells more. The state is then that of the last accepted step.
   virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
 
   virtual const Counters& counters() const = 0;
   virtual std::size_t particles() const = 0;
-  /// Positions, velocities, ids and radii of all particles, in id order; where a scene has several materials, the
-  /// attribute "material" is each one's MaterialType; `channels` adds what effects keep.
+  /// Positions, velocities, ids and radii of all particles, in id order; where a scene has several materials,
+  /// the attribute "material" is its place in the list; `channels` adds what effects keep.
   virtual PointCloud points(bool channels = false) const = 0;
   virtual Diagnostics diagnose() = 0;
   virtual std::uint64_t hash() const = 0;

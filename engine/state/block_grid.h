@@ -1,6 +1,6 @@
 // Repose: which blocks exist. The topology is an OpenVDB tree whose leaves are masks of 4x4x4 nodes, the active
-// nodes of the block; numbers lie beside it in arrays indexed by leaf order, SPGrid-style (Setaluri et al. 2014).
-// Blocks come and go with the material, in any coordinate, without a bounding box.
+// nodes of the block; numbers lie beside it in arrays indexed by leaf order, SPGrid-style (Setaluri et al.
+// 2014). Blocks come and go with the material, in any coordinate, without a bounding box.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ namespace repose {
 struct Topology {
   int flat_axis = -1;
   std::array<std::int32_t, 3> period_start{0, 0, 0};
-  std::array<std::int32_t, 3> period{0, 0, 0};  ///< 0: the axis does not repeat; even, so that no colour meets itself
+  std::array<std::int32_t, 3> period{0, 0,
+                                     0};  ///< 0: the axis does not repeat; even, so that no colour meets itself
 
   /// The block that stands for this one: itself, or where it falls after whole periods.
   Index3 wrap(Index3 block) const;

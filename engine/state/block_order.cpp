@@ -1,5 +1,5 @@
-// Repose: ordering by a parallel sort in three passes: each old block groups its particles by where they go, each
-// new block collects and sorts what comes to it, then every channel is moved.
+// Repose: ordering by a parallel sort in three passes: each old block groups its particles by where they go,
+// each new block collects and sorts what comes to it, then every channel is moved.
 #include "engine/state/block_order.h"
 
 #include <algorithm>
@@ -42,7 +42,9 @@ std::uint32_t cell_in_block(const ParticleSet<Real>& set, std::size_t p, double 
   return cell;
 }
 
-Index3 offset_of(int neighbour) { return {neighbour / 9 - 1, neighbour / 3 % 3 - 1, neighbour % 3 - 1}; }
+Index3 offset_of(int neighbour) {
+  return {neighbour / 9 - 1, neighbour / 3 % 3 - 1, neighbour % 3 - 1};
+}
 
 }  // namespace
 
@@ -51,12 +53,14 @@ void BlockOrder<Real>::group_by_destination(const ParticleSet<Real>& set, std::s
                                             Departures& departures) {
   departures.fill(0);
   const std::size_t begin = set.begin[owner], end = set.begin[owner + 1];
-  for (std::size_t p = begin; p < end; ++p) ++departures[static_cast<std::size_t>(destination(set, p, shift)) + 1];
+  for (std::size_t p = begin; p < end; ++p)
+    ++departures[static_cast<std::size_t>(destination(set, p, shift)) + 1];
   for (std::size_t k = 1; k <= kNeighbours; ++k) departures[k] += departures[k - 1];
   std::array<std::uint32_t, kNeighbours> next;
   std::copy_n(departures.begin(), kNeighbours, next.begin());
   for (std::size_t p = begin; p < end; ++p) {
-    grouped_[begin + next[static_cast<std::size_t>(destination(set, p, shift))]++] = static_cast<std::uint32_t>(p);
+    grouped_[begin + next[static_cast<std::size_t>(destination(set, p, shift))]++] =
+        static_cast<std::uint32_t>(p);
   }
 }
 
@@ -79,8 +83,8 @@ void BlockOrder<Real>::for_each_arrival(const State<Real>& state, const BlockGri
 
 /// Writes the particles that come to an owner to `place`, by cell and then by id.
 template <class Real>
-void BlockOrder<Real>::sort_arrivals(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner,
-                                     double shift, std::uint32_t* place) {
+void BlockOrder<Real>::sort_arrivals(const State<Real>& state, const BlockGrid& old, std::size_t k,
+                                     std::size_t owner, double shift, std::uint32_t* place) {
   const ParticleSet<Real>& set = state.sets[k];
   auto& items = items_[static_cast<std::size_t>(Threads::index())];
   items.clear();
@@ -118,7 +122,8 @@ void BlockOrder<Real>::permute(ParticleSet<Real>& set, Threads& threads, double 
   };
   const auto same = [](auto value) { return value; };
   for (auto& channel : set.position) {
-    move(channel, moved_, [shift](Real x) { return x - static_cast<Real>(kBlockSide * blocks_away(x, shift)); });
+    move(channel, moved_,
+         [shift](Real x) { return x - static_cast<Real>(kBlockSide * blocks_away(x, shift)); });
   }
   for (auto& channel : set.velocity) move(channel, moved_, same);
   for (auto& channel : set.affine) move(channel, moved_, same);

@@ -1,5 +1,5 @@
-// Repose: four numbers per node, for all blocks of the grid or for some of them. Blocks lie one after the other in
-// leaf order; a sparse field keeps a table from block to slot, so that what only a few blocks need costs the
+// Repose: four numbers per node, for all blocks of the grid or for some of them. Blocks lie one after the other
+// in leaf order; a sparse field keeps a table from block to slot, so that what only a few blocks need costs the
 // others four bytes.
 #pragma once
 

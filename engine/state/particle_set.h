@@ -68,12 +68,11 @@ struct ParticleSet {
     return result;
   }
 
-  /// The channel an effect asked for; null if none did.
-  AlignedArray<Real>* find_extra(const std::string& channel) {
-    for (auto& candidate : extra) {
-      if (candidate.name == channel) return &candidate.values;
-    }
-    return nullptr;
+  /// Where the channel of an effect lies in `extra`; extra.size() if no effect asked for it.
+  std::size_t extra_index(const std::string& channel) const {
+    std::size_t index = 0;
+    while (index < extra.size() && extra[index].name != channel) ++index;
+    return index;
   }
 
   std::size_t bytes() const {

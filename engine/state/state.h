@@ -16,31 +16,32 @@ namespace repose {
 
 /// Scalars that the next step reads; saved with the state.
 struct Counters {
-  std::int64_t frame = 0;           ///< frames completed
-  std::int64_t step = 0;            ///< steps completed
-  double time_in_frame = 0.0;       ///< s since the last frame; time itself is frame / fps + this, so frames are exact
-  double time = 0.0;                ///< s
-  double last_dt = 0.0;             ///< s
-  double max_speed = 0.0;           ///< m/s, largest particle speed after the last step
-  double max_gradient = 0.0;        ///< 1/s, largest |C| after the last step
-  std::int32_t order_due = 1;       ///< a particle has drifted as far as its block allows
+  std::int64_t frame = 0;  ///< frames completed
+  std::int64_t step = 0;   ///< steps completed
+  double time_in_frame =
+      0.0;                 ///< s since the last frame; time itself is frame / fps + this, so frames are exact
+  double time = 0.0;       ///< s
+  double last_dt = 0.0;    ///< s
+  double max_speed = 0.0;  ///< m/s, largest particle speed after the last step
+  double max_gradient = 0.0;            ///< 1/s, largest |C| after the last step
+  std::int32_t order_due = 1;           ///< a particle has drifted as far as its block allows
   std::int64_t runs_when_ordered = -1;  ///< runs in the first step after the last order; -1: not yet counted
-  std::int64_t runs_wasted = 0;     ///< sum over the steps since of the runs beyond that
+  std::int64_t runs_wasted = 0;         ///< sum over the steps since of the runs beyond that
   std::int64_t orders = 0;
 };
 
 template <class Real>
 struct State {
-  double spacing = 0.0;                      ///< dx, m
-  Index3 origin_cells{0, 0, 0};              ///< where the scene's origin lies in the lattice, cells
+  double spacing = 0.0;          ///< dx, m
+  Index3 origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice, cells
   Topology topology;
   std::vector<ParticleSet<Real>> sets;
   Counters counters;
 
   BlockGrid grid;
-  NodeField<Real> nodes;                     ///< mass and momentum, then mass and v-bar
-  SparseNodeField<Real> after_friction;      ///< mass and v-tilde, in blocks where there is friction
-  std::vector<std::uint64_t> rows_touched;   ///< per owner: arena rows that its particles reach
+  NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar
+  SparseNodeField<Real> after_friction;     ///< mass and v-tilde, in blocks where there is friction
+  std::vector<std::uint64_t> rows_touched;  ///< per owner: arena rows that its particles reach
 
   std::size_t particles() const {
     std::size_t sum = 0;

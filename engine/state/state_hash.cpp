@@ -12,7 +12,9 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-void absorb(std::uint64_t& hash, std::uint64_t value) { hash = mix(hash + 0x9e3779b97f4a7c15ull + value); }
+void absorb(std::uint64_t& hash, std::uint64_t value) {
+  hash = mix(hash + 0x9e3779b97f4a7c15ull + value);
+}
 
 template <class Real>
 std::uint64_t bits(Real value) {

@@ -1,6 +1,7 @@
-// Repose: the step as data. The scene compiler lists the passes that a scene calls for; the plan checks that each
-// reads only what an earlier one, or the initial state, provides; `repose plan` prints it. Passes of one list run
-// one after the other over a span of a block's particles, or over a block's nodes, while they are in cache.
+// Repose: the step as data. The scene compiler lists the passes that a scene calls for; the plan checks that
+// each reads only what an earlier one, or the initial state, provides; `repose plan` prints it. Passes of one
+// list run one after the other over a span of a block's particles, or over a block's nodes, while they are in
+// cache.
 #pragma once
 
 #include <functional>
@@ -16,25 +17,26 @@ namespace repose {
 /// What passes hand to one another within a chunk of particles; one per thread.
 template <class Real>
 struct Scratch {
-  AlignedArray<Real> arena{kArenaValues};      ///< nodes of a block and its halo: sums, later the moving velocity
+  AlignedArray<Real> arena{kArenaValues};  ///< nodes of a block and its halo: sums, later the moving velocity
   AlignedArray<Real> kept_arena{kArenaValues};  ///< v-tilde, where it is not what moves
   AlignedArray<Real> stress{kStrainComponents * kChunk};
   AlignedArray<Real> velocity{3 * kChunk};
   AlignedArray<Real> affine{kAffineComponents * kChunk};
-  AlignedArray<Real> value{kChunk};  ///< one number per particle, from the first half of an effect to its second
+  AlignedArray<Real> value{
+      kChunk};  ///< one number per particle, from the first half of an effect to its second
 };
 
 /// At most kChunk particles of one block and one set, on their way through the passes.
 template <class Real>
 struct Chunk {
   ParticleSet<Real>& set;
-  std::size_t first;               ///< position in the set's channels
+  std::size_t first;  ///< position in the set's channels
   ParticleSpan<Real> particles;
   Scratch<Real>& scratch;
   Real dt;
-  double spacing;                  ///< dx, m
-  bool two_velocities = false;     ///< whether particles keep another velocity than the one that moves them
-  std::uint64_t rows = 0;          ///< arena rows touched
+  double spacing;               ///< dx, m
+  bool two_velocities = false;  ///< whether particles keep another velocity than the one that moves them
+  std::uint64_t rows = 0;       ///< arena rows touched
   std::size_t runs = 0;
   const Real* moving_velocity[3] = {};                  ///< what moves positions, m/s; set by the gather
   const Real* moving_gradient[kAffineComponents] = {};  ///< what strains, 1/s
@@ -48,13 +50,13 @@ struct NodeBlock {
   std::size_t block;  ///< position in the grid
   Real* nodes;        ///< mass and velocity, kBlockValues numbers
   Real dt;
-  double time;        ///< at the start of the step, s
+  double time;  ///< at the start of the step, s
 };
 
 /// What every pass declares.
 struct PassDescription {
   std::string name;
-  std::string reason;               ///< which scene key asked for it; empty for the core
+  std::string reason;  ///< which scene key asked for it; empty for the core
   std::vector<std::string> reads;
   std::vector<std::string> writes;
 };
@@ -90,9 +92,10 @@ struct StepLimits {
   std::vector<Stiffness> sets;
 };
 
-/// Which velocity moves positions and strain where there is friction. Klar et al. 2016 (section 5.4) take v-bar; then
-/// all the shear of a step reaches the nodes at a wall before friction does, and what should rest creeps by about
-/// 2 dt g sin(theta) H / dx. With explicit steps v-tilde is as stable, rests, and saves the second gather.
+/// Which velocity moves positions and strain where there is friction. Klar et al. 2016 (section 5.4) take
+/// v-bar; then all the shear of a step reaches the nodes at a wall before friction does, and what should rest
+/// creeps by about 2 dt g sin(theta) H / dx. With explicit steps v-tilde is as stable, rests, and saves the
+/// second gather.
 enum class Advection {
   kAfterFriction,   ///< v-tilde
   kBeforeFriction,  ///< v-bar
@@ -116,7 +119,7 @@ struct StepPlan {
   std::vector<OrderPass<Real>> order;
   std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set
   std::vector<NodePass<Real>> nodes;
-  std::vector<std::vector<ParticlePass<Real>>> gather;   ///< per set
+  std::vector<std::vector<ParticlePass<Real>>> gather;  ///< per set
 
   /// Refuses a plan in which a pass reads what nothing before it provides, naming pass and quantity.
   Result<void> validate() const;

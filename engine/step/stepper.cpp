@@ -32,7 +32,10 @@ void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, Real d
     ParticleSet<Real>& set = state.sets[k];
     const std::size_t end = set.begin[owner + 1];
     for (std::size_t first = set.begin[owner]; first < end; first += kChunk) {
-      Chunk<Real> chunk{set, first, set.span(first, std::min(kChunk, end - first)), scratch(), dt, state.spacing, {}, {}, {}, {}, {}, {}};
+      Chunk<Real> chunk{set,       first, set.span(first, std::min(kChunk, end - first)),
+                        scratch(), dt,    state.spacing,
+                        {},        {},    {},
+                        {},        {},    {}};
       visit(k, chunk);
     }
   }
@@ -165,13 +168,14 @@ bool Stepper<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt
     }
     first = false;
   }
-  // A particle's v is a weighted mean of node velocities; with all of them within a distance delta of some velocity,
-  // |C| <= D^-1 delta sum w |x_i - x_p| <= delta sqrt(3 D^-1).
+  // A particle's v is a weighted mean of node velocities; with all of them within a distance delta of some
+  // velocity, |C| <= D^-1 delta sum w |x_i - x_p| <= delta sqrt(3 D^-1).
   double half_diagonal = 0.0, fastest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = 0.5 * (static_cast<double>(high[axis]) - static_cast<double>(low[axis]));
     half_diagonal += extent * extent;
-    fastest = std::max({fastest, std::abs(static_cast<double>(low[axis])), std::abs(static_cast<double>(high[axis]))});
+    fastest = std::max(
+        {fastest, std::abs(static_cast<double>(low[axis])), std::abs(static_cast<double>(high[axis]))});
   }
   const double steps = static_cast<double>(dt) / state.spacing;
   return fastest * steps < 0.999 && std::sqrt(half_diagonal * 3.0 * plan_.transfer.inverse_d) * steps < 0.999;
@@ -208,15 +212,16 @@ std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::si
     for (std::size_t axis = 0; axis < 3; ++axis) in.velocity[axis] = mine.velocity.data() + axis * kChunk;
     for (std::size_t k = 0; k < kAffineComponents; ++k) in.affine[k] = mine.affine.data() + k * kChunk;
     kernel(in, mine.arena.data());
-    const std::size_t p = plan_.kernels->inspect(in.velocity, in.affine, chunk.particles.count, dt, lattice.spacing);
+    const std::size_t p =
+        plan_.kernels->inspect(in.velocity, in.affine, chunk.particles.count, dt, lattice.spacing);
     if (p < chunk.particles.count) offender = accuse(state, owner, chunk, p, in);
   });
   return offender;
 }
 
 template <class Real>
-Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, const Chunk<Real>& chunk, std::size_t p,
-                               const GatherInput<Real>& trial) const {
+Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, const Chunk<Real>& chunk,
+                               std::size_t p, const GatherInput<Real>& trial) const {
   Offender offender;
   offender.set = chunk.set.name;
   offender.id = chunk.set.id[chunk.first + p];
@@ -238,7 +243,8 @@ Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, cons
   return offender;
 }
 
-/// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside it.
+/// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside
+/// it.
 template <class Real>
 bool Stepper<Real>::load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& mine) const {
   const auto neighbours = state.grid.neighbours(owner);
@@ -294,7 +300,8 @@ void Stepper<Real>::finish(State<Real>& state, Real) {
   counters.max_speed = std::sqrt(static_cast<double>(all.speed_squared));
   counters.max_gradient = std::sqrt(static_cast<double>(all.gradient_squared));
   const Real shift = static_cast<Real>(plan_.transfer.base_shift);
-  const bool outside = std::floor(all.lowest - shift) < kLowestBase || std::floor(all.highest - shift) > kHighestBase;
+  const bool outside =
+      std::floor(all.lowest - shift) < kLowestBase || std::floor(all.highest - shift) > kHighestBase;
   counters.order_due = outside ? 1 : 0;
   std::int64_t runs = 0;
   for (const std::size_t n : runs_) runs += static_cast<std::int64_t>(n);

@@ -1,5 +1,6 @@
 // Repose: runs a step plan on a state. A step is refused before any particle is written when it would break:
-// the velocities of the nodes bound what particles can do, and only blocks whose bound is not enough gather on trial.
+// the velocities of the nodes bound what particles can do, and only blocks whose bound is not enough gather on
+// trial.
 #pragma once
 
 #include <optional>
@@ -19,16 +20,16 @@ struct Offender {
   std::string set;
   std::uint32_t id = 0;
   Index3 block{0, 0, 0};
-  Vec3 position{0, 0, 0};       ///< m
-  Vec3 velocity{0, 0, 0};       ///< m/s, before the step
-  Vec3 trial_velocity{0, 0, 0}; ///< m/s, that the step would have moved it with
-  double determinant = 0.0;     ///< det(I + dt grad v)
-  std::string reason;           ///< what would happen to it, such as "would move over a cell"
+  Vec3 position{0, 0, 0};        ///< m
+  Vec3 velocity{0, 0, 0};        ///< m/s, before the step
+  Vec3 trial_velocity{0, 0, 0};  ///< m/s, that the step would have moved it with
+  double determinant = 0.0;      ///< det(I + dt grad v)
+  std::string reason;            ///< what would happen to it, such as "would move over a cell"
 };
 
 struct StepReport {
   bool accepted = false;
-  double dt = 0.0;                   ///< s; of the step made, or of the last one refused
+  double dt = 0.0;  ///< s; of the step made, or of the last one refused
   Limit limit = Limit::kMaxStep;
   int redone = 0;                    ///< how often it was refused
   std::optional<Offender> offender;  ///< of the last refusal
@@ -39,8 +40,8 @@ class Stepper {
  public:
   Stepper(StepPlan<Real> plan, int threads);
 
-  /// One step of at most what the limits allow and `remaining` seconds (infinity: no frame to end on). If it is not
-  /// accepted after three halvings, no particle has changed.
+  /// One step of at most what the limits allow and `remaining` seconds (infinity: no frame to end on). If it is
+  /// not accepted after three halvings, no particle has changed.
   StepReport step(State<Real>& state, double remaining);
 
   const StepPlan<Real>& plan() const { return plan_; }

@@ -1,8 +1,9 @@
-// Repose: how long a step may be. Each limit has a name, and the name of the one that bound is reported, so that a
-// slow run says why it is slow:
+// Repose: how long a step may be. Each limit has a name, and the name of the one that bound is reported, so
+// that a slow run says why it is slow:
 //   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, Table 2, has 1)
-//   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2, margins in docs/math.md
-//   isolated  a particle alone must not feed its own pulse: dt <= 2 dx / (a sqrt(2h - D^-1)), a^2 = (3 lambda + 2 mu)/rho;
+//   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2, margins in
+//   docs/math.md isolated  a particle alone must not feed its own pulse: dt <= 2 dx / (a sqrt(2h - D^-1)), a^2
+//   = (3 lambda + 2 mu)/rho;
 //             in the MLS form h = D^-1 (after Bai and Schroeder 2022)
 //   strain    dt |grad v| <= `strain`, which keeps det(I + dt grad v) > 0
 //   max_step  the scene's own bound
@@ -23,7 +24,8 @@ struct StepSize {
   double allowed = 0.0;  ///< what the limits allow before the frame cuts it, s
 };
 
-/// The next step: the shortest limit, shortened so that whole equal steps fill `remaining` seconds (infinity: no frame).
+/// The next step: the shortest limit, shortened so that whole equal steps fill `remaining` seconds (infinity:
+/// no frame).
 StepSize choose_step(const StepLimits& limits, const TransferConstants& transfer, double spacing,
                      const Counters& counters, double remaining);
 

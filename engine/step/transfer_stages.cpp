@@ -64,7 +64,8 @@ ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& 
             in.lattice = lattice;
             const auto target = [&](bool scratch) {
               for (std::size_t axis = 0; axis < 3; ++axis) {
-                in.velocity[axis] = scratch ? chunk.scratch.velocity.data() + axis * kChunk : chunk.particles.velocity[axis];
+                in.velocity[axis] =
+                    scratch ? chunk.scratch.velocity.data() + axis * kChunk : chunk.particles.velocity[axis];
               }
               for (std::size_t k = 0; k < kAffineComponents; ++k) {
                 in.affine[k] = scratch ? chunk.scratch.affine.data() + k * kChunk : chunk.particles.affine[k];
@@ -84,8 +85,7 @@ ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& 
 template <class Real>
 ParticlePass<Real> advance_pass(const StepPlan<Real>& plan) {
   const auto kernel = plan.kernels->advance;
-  return {{"advance", "", {"position", "moving velocity"}, {"position"}},
-          [kernel](Chunk<Real>& chunk) {
+  return {{"advance", "", {"position", "moving velocity"}, {"position"}}, [kernel](Chunk<Real>& chunk) {
             const Real per_cell = static_cast<Real>(static_cast<double>(chunk.dt) / chunk.spacing);
             kernel(chunk.particles, chunk.moving_velocity, per_cell, chunk.motion);
           }};
@@ -113,14 +113,14 @@ NodePass<Real> normalize_pass(const StepPlan<Real>& plan) {
           }};
 }
 
-#define REPOSE_INSTANTIATE(Real)                                                              \
-  template Lattice<Real> make_lattice(const State<Real>&, const TransferConstants&);          \
-  template ParticlePass<Real> stress_pass(const MaterialRuntime<Real>&);                      \
-  template ParticlePass<Real> scatter_pass(const StepPlan<Real>&, const Lattice<Real>&);      \
-  template ParticlePass<Real> gather_pass(const StepPlan<Real>&, const Lattice<Real>&);       \
-  template ParticlePass<Real> advance_pass(const StepPlan<Real>&);                            \
-  template ParticlePass<Real> trial_pass(const MaterialRuntime<Real>&);                       \
-  template ParticlePass<Real> project_pass(const MaterialRuntime<Real>&);                     \
+#define REPOSE_INSTANTIATE(Real)                                                         \
+  template Lattice<Real> make_lattice(const State<Real>&, const TransferConstants&);     \
+  template ParticlePass<Real> stress_pass(const MaterialRuntime<Real>&);                 \
+  template ParticlePass<Real> scatter_pass(const StepPlan<Real>&, const Lattice<Real>&); \
+  template ParticlePass<Real> gather_pass(const StepPlan<Real>&, const Lattice<Real>&);  \
+  template ParticlePass<Real> advance_pass(const StepPlan<Real>&);                       \
+  template ParticlePass<Real> trial_pass(const MaterialRuntime<Real>&);                  \
+  template ParticlePass<Real> project_pass(const MaterialRuntime<Real>&);                \
   template NodePass<Real> normalize_pass(const StepPlan<Real>&);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

@@ -1,6 +1,7 @@
-// Repose: the core of every explicit step, as passes: stress and scatter on the way to the nodes; gather, advance,
-// trial strain and return map on the way back. Where there is friction two node velocities exist, v-bar (after
-// collisions) and v-tilde (after friction); particles keep v-tilde, and Advection says which one moves them.
+// Repose: the core of every explicit step, as passes: stress and scatter on the way to the nodes; gather,
+// advance, trial strain and return map on the way back. Where there is friction two node velocities exist,
+// v-bar (after collisions) and v-tilde (after friction); particles keep v-tilde, and Advection says which one
+// moves them.
 #pragma once
 
 #include <memory>

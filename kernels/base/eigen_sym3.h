@@ -2,7 +2,7 @@
 // number of sweeps, so that no lane's digits depend on another's. Jacobi keeps the relative accuracy of small
 // matrices (e = b - I near zero), where closed formulas lose it, and needs no case for equal values.
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_BASE_EIGEN_SYM3_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_BASE_EIGEN_SYM3_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_BASE_EIGEN_SYM3_H
 #undef REPOSE_KERNELS_BASE_EIGEN_SYM3_H
 #else

@@ -3,7 +3,7 @@
 // Largest error, against long double: log1p 2 ulp, expm1 3 ulp, in float and in double, over the ranges below.
 //   log1p: x > -1, 1 + x normal       expm1: |x| <= 80 (float), 700 (double); clamped beyond
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_BASE_ELEMENTARY_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_BASE_ELEMENTARY_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_BASE_ELEMENTARY_H
 #undef REPOSE_KERNELS_BASE_ELEMENTARY_H
 #else
@@ -33,7 +33,8 @@ REPOSE_INLINE N log1p(N x) {
   const N z = s * s;
   N r;
   if constexpr (sizeof(T) == 4) {
-    r = fma(z, fma(z, fma(z, N(T(0.24279078841)), N(T(0.28498786688))), N(T(0.40000972152))), N(T(0.66666662693)));
+    r = fma(z, fma(z, fma(z, N(T(0.24279078841)), N(T(0.28498786688))), N(T(0.40000972152))),
+            N(T(0.66666662693)));
   } else {
     r = fma(z, N(T(1.479819860511658591e-01)), N(T(1.531383769920937332e-01)));
     r = fma(z, r, N(T(1.818357216161805012e-01)));
@@ -63,10 +64,21 @@ REPOSE_INLINE N expm1(N x) {
   const N k = round(x * N(T(1.4426950408889634074)));
   const N r = fnma(k, N(ln2_low), fnma(k, N(ln2_high), x));
   constexpr int kTerms = sizeof(T) == 4 ? 8 : 14;
-  constexpr double kReciprocalFactorial[] = {1.0,          1.0,           1.0 / 2,        1.0 / 6,
-                                             1.0 / 24,     1.0 / 120,     1.0 / 720,      1.0 / 5040,
-                                             1.0 / 40320,  1.0 / 362880,  1.0 / 3628800,  1.0 / 39916800,
-                                             1.0 / 479001600, 1.0 / 6227020800.0, 1.0 / 87178291200.0};
+  constexpr double kReciprocalFactorial[] = {1.0,
+                                             1.0,
+                                             1.0 / 2,
+                                             1.0 / 6,
+                                             1.0 / 24,
+                                             1.0 / 120,
+                                             1.0 / 720,
+                                             1.0 / 5040,
+                                             1.0 / 40320,
+                                             1.0 / 362880,
+                                             1.0 / 3628800,
+                                             1.0 / 39916800,
+                                             1.0 / 479001600,
+                                             1.0 / 6227020800.0,
+                                             1.0 / 87178291200.0};
   N tail = N(T(kReciprocalFactorial[kTerms]));
   HWY_UNROLL(14)
   for (int term = kTerms - 1; term >= 2; --term) tail = fma(tail, r, N(T(kReciprocalFactorial[term])));

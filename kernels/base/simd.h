@@ -4,7 +4,7 @@
 // the same bits (both fuse; the portable baseline rounds its multiply-adds twice and gives others).
 // Scalars have the same operations, so a material reads the same for one number and for sixteen.
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_BASE_SIMD_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_BASE_SIMD_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_BASE_SIMD_H
 #undef REPOSE_KERNELS_BASE_SIMD_H
 #else
@@ -64,66 +64,114 @@ struct Pack {
 };
 
 template <class T>
-REPOSE_INLINE Pack<T> operator+(Pack<T> a, Pack<T> b) { return hn::Add(a.raw, b.raw); }
+REPOSE_INLINE Pack<T> operator+(Pack<T> a, Pack<T> b) {
+  return hn::Add(a.raw, b.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> operator-(Pack<T> a, Pack<T> b) { return hn::Sub(a.raw, b.raw); }
+REPOSE_INLINE Pack<T> operator-(Pack<T> a, Pack<T> b) {
+  return hn::Sub(a.raw, b.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> operator*(Pack<T> a, Pack<T> b) { return hn::Mul(a.raw, b.raw); }
+REPOSE_INLINE Pack<T> operator*(Pack<T> a, Pack<T> b) {
+  return hn::Mul(a.raw, b.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> operator/(Pack<T> a, Pack<T> b) { return hn::Div(a.raw, b.raw); }
+REPOSE_INLINE Pack<T> operator/(Pack<T> a, Pack<T> b) {
+  return hn::Div(a.raw, b.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> operator-(Pack<T> a) { return hn::Neg(a.raw); }
+REPOSE_INLINE Pack<T> operator-(Pack<T> a) {
+  return hn::Neg(a.raw);
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator<(Pack<T> a, Pack<T> b) { return {hn::Lt(a.raw, b.raw)}; }
+REPOSE_INLINE Mask<T> operator<(Pack<T> a, Pack<T> b) {
+  return {hn::Lt(a.raw, b.raw)};
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator<=(Pack<T> a, Pack<T> b) { return {hn::Le(a.raw, b.raw)}; }
+REPOSE_INLINE Mask<T> operator<=(Pack<T> a, Pack<T> b) {
+  return {hn::Le(a.raw, b.raw)};
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator>(Pack<T> a, Pack<T> b) { return {hn::Gt(a.raw, b.raw)}; }
+REPOSE_INLINE Mask<T> operator>(Pack<T> a, Pack<T> b) {
+  return {hn::Gt(a.raw, b.raw)};
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator>=(Pack<T> a, Pack<T> b) { return {hn::Ge(a.raw, b.raw)}; }
+REPOSE_INLINE Mask<T> operator>=(Pack<T> a, Pack<T> b) {
+  return {hn::Ge(a.raw, b.raw)};
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator&(Mask<T> a, Mask<T> b) { return {hn::And(a.raw, b.raw)}; }
+REPOSE_INLINE Mask<T> operator&(Mask<T> a, Mask<T> b) {
+  return {hn::And(a.raw, b.raw)};
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator|(Mask<T> a, Mask<T> b) { return {hn::Or(a.raw, b.raw)}; }
+REPOSE_INLINE Mask<T> operator|(Mask<T> a, Mask<T> b) {
+  return {hn::Or(a.raw, b.raw)};
+}
 template <class T>
-REPOSE_INLINE Mask<T> operator!(Mask<T> a) { return {hn::Not(a.raw)}; }
+REPOSE_INLINE Mask<T> operator!(Mask<T> a) {
+  return {hn::Not(a.raw)};
+}
 
 /// a b + c, fused where the instruction set fuses.
 template <class T>
-REPOSE_INLINE Pack<T> fma(Pack<T> a, Pack<T> b, Pack<T> c) { return hn::MulAdd(a.raw, b.raw, c.raw); }
+REPOSE_INLINE Pack<T> fma(Pack<T> a, Pack<T> b, Pack<T> c) {
+  return hn::MulAdd(a.raw, b.raw, c.raw);
+}
 /// c - a b, fused.
 template <class T>
-REPOSE_INLINE Pack<T> fnma(Pack<T> a, Pack<T> b, Pack<T> c) { return hn::NegMulAdd(a.raw, b.raw, c.raw); }
+REPOSE_INLINE Pack<T> fnma(Pack<T> a, Pack<T> b, Pack<T> c) {
+  return hn::NegMulAdd(a.raw, b.raw, c.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> sqrt(Pack<T> a) { return hn::Sqrt(a.raw); }
+REPOSE_INLINE Pack<T> sqrt(Pack<T> a) {
+  return hn::Sqrt(a.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> abs(Pack<T> a) { return hn::Abs(a.raw); }
+REPOSE_INLINE Pack<T> abs(Pack<T> a) {
+  return hn::Abs(a.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> min(Pack<T> a, Pack<T> b) { return hn::Min(a.raw, b.raw); }
+REPOSE_INLINE Pack<T> min(Pack<T> a, Pack<T> b) {
+  return hn::Min(a.raw, b.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> max(Pack<T> a, Pack<T> b) { return hn::Max(a.raw, b.raw); }
+REPOSE_INLINE Pack<T> max(Pack<T> a, Pack<T> b) {
+  return hn::Max(a.raw, b.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> floor(Pack<T> a) { return hn::Floor(a.raw); }
+REPOSE_INLINE Pack<T> floor(Pack<T> a) {
+  return hn::Floor(a.raw);
+}
 template <class T>
-REPOSE_INLINE Pack<T> round(Pack<T> a) { return hn::Round(a.raw); }
+REPOSE_INLINE Pack<T> round(Pack<T> a) {
+  return hn::Round(a.raw);
+}
 /// The sign of `sign` with the magnitude of `a`.
 template <class T>
-REPOSE_INLINE Pack<T> copysign(Pack<T> a, Pack<T> sign) { return hn::CopySign(a.raw, sign.raw); }
+REPOSE_INLINE Pack<T> copysign(Pack<T> a, Pack<T> sign) {
+  return hn::CopySign(a.raw, sign.raw);
+}
 template <class T>
 REPOSE_INLINE Pack<T> select(Mask<T> condition, Pack<T> yes, Pack<T> no) {
   return hn::IfThenElse(condition.raw, yes.raw, no.raw);
 }
 template <class T>
-REPOSE_INLINE bool any(Mask<T> mask) { return !hn::AllFalse(PackTag<T>(), mask.raw); }
+REPOSE_INLINE bool any(Mask<T> mask) {
+  return !hn::AllFalse(PackTag<T>(), mask.raw);
+}
 /// Whether one of the first `count` lanes holds.
 template <class T>
 REPOSE_INLINE bool any_first(Mask<T> mask, std::size_t count) {
   return !hn::AllFalse(PackTag<T>(), hn::And(mask.raw, hn::FirstN(PackTag<T>(), count)));
 }
 template <class T>
-REPOSE_INLINE T largest(Pack<T> a) { return hn::GetLane(hn::MaxOfLanes(PackTag<T>(), a.raw)); }
+REPOSE_INLINE T largest(Pack<T> a) {
+  return hn::GetLane(hn::MaxOfLanes(PackTag<T>(), a.raw));
+}
 template <class T>
-REPOSE_INLINE T smallest(Pack<T> a) { return hn::GetLane(hn::MinOfLanes(PackTag<T>(), a.raw)); }
+REPOSE_INLINE T smallest(Pack<T> a) {
+  return hn::GetLane(hn::MinOfLanes(PackTag<T>(), a.raw));
+}
 
 /// 2^k for integral k that keeps the result normal.
 template <class T>
@@ -157,26 +205,48 @@ template <class T>
 concept Real = std::is_floating_point_v<T>;
 
 template <Real T>
-REPOSE_INLINE T fma(T a, T b, T c) { return std::fma(a, b, c); }
+REPOSE_INLINE T fma(T a, T b, T c) {
+  return std::fma(a, b, c);
+}
 template <Real T>
-REPOSE_INLINE T fnma(T a, T b, T c) { return std::fma(-a, b, c); }
+REPOSE_INLINE T fnma(T a, T b, T c) {
+  return std::fma(-a, b, c);
+}
 template <Real T>
-REPOSE_INLINE T sqrt(T a) { return std::sqrt(a); }
+REPOSE_INLINE T sqrt(T a) {
+  return std::sqrt(a);
+}
 template <Real T>
-REPOSE_INLINE T abs(T a) { return std::fabs(a); }
+REPOSE_INLINE T abs(T a) {
+  return std::fabs(a);
+}
 template <Real T>
-REPOSE_INLINE T min(T a, T b) { return b < a ? b : a; }
+REPOSE_INLINE T min(T a, T b) {
+  return b < a ? b : a;
+}
 template <Real T>
-REPOSE_INLINE T max(T a, T b) { return a < b ? b : a; }
+REPOSE_INLINE T max(T a, T b) {
+  return a < b ? b : a;
+}
 template <Real T>
-REPOSE_INLINE T round(T a) { return std::nearbyint(a); }
+REPOSE_INLINE T round(T a) {
+  return std::nearbyint(a);
+}
 template <Real T>
-REPOSE_INLINE T copysign(T a, T sign) { return std::copysign(a, sign); }
+REPOSE_INLINE T copysign(T a, T sign) {
+  return std::copysign(a, sign);
+}
 template <Real T>
-REPOSE_INLINE T select(bool condition, T yes, T no) { return condition ? yes : no; }
-REPOSE_INLINE bool any(bool condition) { return condition; }
+REPOSE_INLINE T select(bool condition, T yes, T no) {
+  return condition ? yes : no;
+}
+REPOSE_INLINE bool any(bool condition) {
+  return condition;
+}
 template <Real T>
-REPOSE_INLINE T exp2_of_integer(T k) { return std::ldexp(T(1), static_cast<int>(k)); }
+REPOSE_INLINE T exp2_of_integer(T k) {
+  return std::ldexp(T(1), static_cast<int>(k));
+}
 template <Real T>
 REPOSE_INLINE void split_exponent(T x, T& m, T& k) {
   int exponent = 0;
@@ -341,8 +411,8 @@ REPOSE_INLINE void sum_over_nodes(const Row<T>& row, T* four) {
 
 /// sum_over_nodes of four rows at once, each to its four numbers: fewer shuffles where a row is one register.
 template <class T>
-REPOSE_INLINE void sum_over_nodes(const Row<T>& a, const Row<T>& b, const Row<T>& c, const Row<T>& d, T* to_a, T* to_b,
-                                  T* to_c, T* to_d) {
+REPOSE_INLINE void sum_over_nodes(const Row<T>& a, const Row<T>& b, const Row<T>& c, const Row<T>& d, T* to_a,
+                                  T* to_b, T* to_c, T* to_d) {
   if constexpr (Pack<T>::size() == 16) {
     const PackTag<T> tag;
     const hn::Half<PackTag<T>> half;

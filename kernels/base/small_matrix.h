@@ -3,7 +3,7 @@
 // polynomial for small matrices and the eigen decomposition for the rest, chosen lane by lane: a result
 // never depends on its neighbours in a register.
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_BASE_SMALL_MATRIX_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_BASE_SMALL_MATRIX_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_BASE_SMALL_MATRIX_H
 #undef REPOSE_KERNELS_BASE_SMALL_MATRIX_H
 #else
@@ -49,7 +49,9 @@ REPOSE_INLINE Sym3<N> select(M condition, const Sym3<N>& yes, const Sym3<N>& no)
           select(condition, yes.yy, no.yy), select(condition, yes.yz, no.yz), select(condition, yes.zz, no.zz)};
 }
 template <class N>
-REPOSE_INLINE N trace(const Sym3<N>& a) { return a.xx + a.yy + a.zz; }
+REPOSE_INLINE N trace(const Sym3<N>& a) {
+  return a.xx + a.yy + a.zz;
+}
 /// a : a, the square of the Frobenius norm.
 template <class N>
 REPOSE_INLINE N square_norm(const Sym3<N>& a) {

@@ -1,6 +1,6 @@
 // Repose: which instruction sets the kernels are compiled for. Include before any Highway header, in every
-// file of kernels/: AVX-512, AVX2 with FMA, and the compiler's baseline. The sets between them are left out: they
-// would lengthen the build for machines that render farms no longer have.
+// file of kernels/: AVX-512, AVX2 with FMA, and the compiler's baseline. The sets between them are left out:
+// they would lengthen the build for machines that render farms no longer have.
 #pragma once
 
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)

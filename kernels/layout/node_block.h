@@ -24,7 +24,9 @@ inline constexpr int kArenaValues = kArenaSide * kArenaSide * kArenaRow + 16;
 
 inline constexpr int kNeighbours = 27;
 /// Position of the neighbour block at offset (x, y, z) in {-1, 0, 1}^3 in tables of 27.
-constexpr int neighbour_index(int x, int y, int z) { return (x + 1) * 9 + (y + 1) * 3 + (z + 1); }
+constexpr int neighbour_index(int x, int y, int z) {
+  return (x + 1) * 9 + (y + 1) * 3 + (z + 1);
+}
 inline constexpr int kSelf = neighbour_index(0, 0, 0);
 
 /// Lowest and highest base node of the particles that a block may hold.

@@ -1,27 +1,49 @@
-// Repose: stencils, the B-splines through which particles and nodes speak (Klar et al. 2016, section 5, eqs. 5-6, for the cubic one). The
-// quadratic one spans three nodes an axis. With f the particle's distance from its base node in cells, in
-// [1/2, 3/2): w = (3/2 - f)^2/2, 3/4 - (f - 1)^2, (f - 1/2)^2/2.
-// D = sum w (x_i - x_p)(x_i - x_p)^T is dx^2/4 I, whatever f (Jiang et al. 2015; Klar et al. 2016, eq. 8).
+// Repose: stencils, the B-splines through which particles and nodes speak (Klar et al. 2016, section 5, eqs.
+// 5-6, for the cubic one). The quadratic one spans three nodes an axis. With f the particle's distance from its
+// base node in cells, in [1/2, 3/2): w = (3/2 - f)^2/2, 3/4 - (f - 1)^2, (f - 1/2)^2/2. D = sum w (x_i -
+// x_p)(x_i - x_p)^T is dx^2/4 I, whatever f (Jiang et al. 2015; Klar et al. 2016, eq. 8).
 #ifndef REPOSE_KERNELS_LAYOUT_STENCIL_H_CONSTANTS
 #define REPOSE_KERNELS_LAYOUT_STENCIL_H_CONSTANTS
+
+#include <array>
+#include <tuple>
 
 namespace repose {
 
 struct QuadraticStencil {
   static constexpr const char* kName = "quadratic";
-  static constexpr int kWidth = 3;             ///< nodes an axis
-  static constexpr int kCenter = 1;            ///< distances are counted from this node: fewer digits cancel
-  static constexpr double kBaseShift = 0.5;    ///< base node = floor(x/dx - shift)
-  static constexpr double kInverseD = 4.0;     ///< D^-1 in 1/dx^2
+  static constexpr const char* kMeaning = "quadratic B-spline, 27 nodes";
+  static constexpr int kWidth = 3;           ///< nodes an axis
+  static constexpr int kCenter = 1;          ///< distances are counted from this node: fewer digits cancel
+  static constexpr double kBaseShift = 0.5;  ///< base node = floor(x/dx - shift)
+  static constexpr double kInverseD = 4.0;   ///< D^-1 in 1/dx^2
   /// Largest sum of (dw)^2/w over the stencil in 1/dx^2; bounds the feedback of a particle on itself.
   static constexpr double kFeedback = 6.0;
 };
+
+/// The list of stencils. A new one is a struct like the above, its Weights below, and its name here.
+using Stencils = std::tuple<QuadraticStencil>;
+
+/// What the engine needs of a stencil outside the kernels.
+struct StencilFigures {
+  const char* name;
+  const char* meaning;
+  double base_shift;
+  double inverse_d;
+};
+
+template <class... Stencil>
+constexpr auto figures_of(const std::tuple<Stencil...>&) {
+  return std::array{
+      StencilFigures{Stencil::kName, Stencil::kMeaning, Stencil::kBaseShift, Stencil::kInverseD}...};
+}
+inline constexpr auto kStencilFigures = figures_of(Stencils{});
 
 }  // namespace repose
 #endif
 
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_LAYOUT_STENCIL_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_LAYOUT_STENCIL_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_LAYOUT_STENCIL_H
 #undef REPOSE_KERNELS_LAYOUT_STENCIL_H
 #else
@@ -62,8 +84,8 @@ struct StencilPack {
   Pack<T> from_center[3];                 // x_p - x_c in cells, c the centre node
 };
 
-/// Locates `lanes` particles from `first` on. On the single-node axis of plane strain (`flat_axis`) the one node has
-/// all the weight.
+/// Locates `lanes` particles from `first` on. On the single-node axis of plane strain (`flat_axis`) the one
+/// node has all the weight.
 template <class Stencil, class T>
 REPOSE_INLINE void locate(T* const position[3], std::size_t first, std::size_t lanes, int flat_axis,
                           StencilPack<T>& out) {

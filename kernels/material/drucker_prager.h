@@ -31,12 +31,23 @@ enum class ConeMatching {
 inline constexpr Choice kConeMatchings[] = {
     {"triaxial_compression", "Klar et al. 2016, eq. 31"},
     {"plane_strain", "in plane strain, as this law flows: at constant volume"},
-    {"plane_strain_associated", "Bui et al. 2008; for flow that dilates, so here it acts a little lower (30 as 28.7)"},
-    {"two_dimensional", "the slope of the 2D law, Klar et al. 2016 supplement, eq. 32; in plane strain far stronger (30 as 48.6)"},
+    {"plane_strain_associated",
+     "Bui et al. 2008; for flow that dilates, so here it acts a little lower (30 as 28.7)"},
+    {"two_dimensional",
+     "the slope of the 2D law, Klar et al. 2016 supplement, eq. 32; in plane strain far stronger (30 as 48.6)"},
 };
+
+template <class Real>
+struct DruckerPragerConstants;
 
 /// Dry sand.
 struct DruckerPragerParameters {
+  static constexpr const char* kName = "drucker_prager";
+  static constexpr const char* kMeaning = "dry sand";
+  static constexpr bool kYields = true;
+  template <class Real>
+  using Constants = DruckerPragerConstants<Real>;
+
   Elasticity elasticity;
   double friction_angle = 35.0;  ///< phi, degrees
   ConeMatching matching = ConeMatching::kTriaxialCompression;
@@ -47,11 +58,14 @@ struct DruckerPragerParameters {
     const double sine = std::sin(phi);
     const double tangent = std::tan(phi);
     switch (matching) {
-      case ConeMatching::kTriaxialCompression: return std::sqrt(2.0 / 3.0) * 2.0 * sine / (3.0 - sine);
-      case ConeMatching::kPlaneStrain: return std::sqrt(2.0) / 3.0 * sine;
+      case ConeMatching::kTriaxialCompression:
+        return std::sqrt(2.0 / 3.0) * 2.0 * sine / (3.0 - sine);
+      case ConeMatching::kPlaneStrain:
+        return std::sqrt(2.0) / 3.0 * sine;
       case ConeMatching::kPlaneStrainAssociated:
         return std::sqrt(2.0) * tangent / std::sqrt(9.0 + 12.0 * tangent * tangent);
-      case ConeMatching::kTwoDimensional: return sine / std::sqrt(2.0);
+      case ConeMatching::kTwoDimensional:
+        return sine / std::sqrt(2.0);
     }
     return 0.0;
   }
@@ -60,8 +74,11 @@ struct DruckerPragerParameters {
   void describe(Fields& fields) {
     elasticity.describe(fields);
     fields.number("friction_angle", friction_angle,
-                  {.unit = "degrees", .meaning = "angle of internal friction; dry sand has 30 to 38",
-                   .low = 0.0, .high = 90.0, .high_open = true});
+                  {.unit = "degrees",
+                   .meaning = "angle of internal friction; dry sand has 30 to 38",
+                   .low = 0.0,
+                   .high = 90.0,
+                   .high_open = true});
     fields.choice("cone_matching", matching, kConeMatchings,
                   "the experiment in which the cone agrees with Mohr-Coulomb at that angle");
   }
@@ -83,7 +100,7 @@ struct DruckerPragerConstants {
 #endif
 
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H
 #undef REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H
 #else
@@ -98,9 +115,9 @@ namespace repose {
 namespace HWY_NAMESPACE {
 
 struct DruckerPrager {
+  using Parameters = DruckerPragerParameters;
   template <class T>
   using Constants = DruckerPragerConstants<T>;
-  static constexpr bool kPlastic = true;
 
   template <class N>
   REPOSE_INLINE static Sym3<N> stress(const DruckerPragerConstants<Scalar<N>>& c, const Sym3<N>& eps) {

@@ -1,7 +1,8 @@
 // Repose: the Hencky elastic solid.
 //
-//   strain energy   psi = mu eps : eps + (lambda/2) tr(eps)^2,   eps = log(b)/2, b = F F^T   (Klar et al. 2016, eq. 25)
-//   Kirchhoff       tau = d psi / d eps = 2 mu eps + lambda tr(eps) I                        (eq. 26, with P F^T = tau)
+//   strain energy   psi = mu eps : eps + (lambda/2) tr(eps)^2,   eps = log(b)/2, b = F F^T   (Klar et al. 2016,
+//   eq. 25) Kirchhoff       tau = d psi / d eps = 2 mu eps + lambda tr(eps) I                        (eq. 26,
+//   with P F^T = tau)
 //
 // The strain is stored, not F: tau is linear in it, it needs 6 numbers, and no step size is baked into it.
 // Along one axis tau/s has its maximum at a stretch of e and softens beyond: not a law for rubber bands.
@@ -11,8 +12,17 @@
 
 namespace repose {
 
+template <class Real>
+struct HenckyConstants;
+
 /// An elastic solid.
 struct HenckyParameters {
+  static constexpr const char* kName = "elastic";
+  static constexpr const char* kMeaning = "an elastic solid of Hencky strain";
+  static constexpr bool kYields = false;
+  template <class Real>
+  using Constants = HenckyConstants<Real>;
+
   Elasticity elasticity{.density = 1000.0, .youngs_modulus = 1.0e6, .poisson_ratio = 0.3};
 
   template <class Fields>
@@ -25,6 +35,7 @@ struct HenckyParameters {
 template <class Real>
 struct HenckyConstants {
   Real mu, lambda;  // Pa
+  explicit HenckyConstants(const HenckyParameters& p) : HenckyConstants(p.elasticity) {}
   explicit HenckyConstants(const Elasticity& elasticity)
       : mu(static_cast<Real>(elasticity.mu())), lambda(static_cast<Real>(elasticity.lambda())) {}
 };
@@ -33,7 +44,7 @@ struct HenckyConstants {
 #endif
 
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_MATERIAL_HENCKY_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_MATERIAL_HENCKY_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_MATERIAL_HENCKY_H
 #undef REPOSE_KERNELS_MATERIAL_HENCKY_H
 #else
@@ -64,9 +75,9 @@ REPOSE_INLINE Sym3<N> hencky_stress(const HenckyConstants<Scalar<N>>& c, const S
 }
 
 struct HenckyElastic {
+  using Parameters = HenckyParameters;
   template <class T>
   using Constants = HenckyConstants<T>;
-  static constexpr bool kPlastic = false;
 
   template <class N>
   REPOSE_INLINE static Sym3<N> stress(const HenckyConstants<Scalar<N>>& c, const Sym3<N>& eps) {

@@ -24,14 +24,18 @@ struct Elasticity {
   template <class Fields>
   void describe(Fields& fields) {
     fields.number("density", density,
-                  {.unit = "kg/m^3", .meaning = "mass per volume of the material at rest, pores included",
-                   .low = 0.0, .low_open = true});
+                  {.unit = "kg/m^3",
+                   .meaning = "mass per volume of the material at rest, pores included",
+                   .low = 0.0,
+                   .low_open = true});
     fields.number("youngs_modulus", youngs_modulus,
-                  {.unit = "Pa", .meaning = "stiffness; real sand has about 3.5e7, films use 3.5e5",
-                   .low = 0.0, .low_open = true});
-    fields.number("poisson_ratio", poisson_ratio,
-                  {.unit = "", .meaning = "sideways over lengthwise strain", .low = 0.0, .high = 0.5,
-                   .high_open = true});
+                  {.unit = "Pa",
+                   .meaning = "stiffness; real sand has about 3.5e7, films use 3.5e5",
+                   .low = 0.0,
+                   .low_open = true});
+    fields.number(
+        "poisson_ratio", poisson_ratio,
+        {.unit = "", .meaning = "sideways over lengthwise strain", .low = 0.0, .high = 0.5, .high_open = true});
   }
 };
 

@@ -1,7 +1,22 @@
-// Repose: the list of materials. A new one is a header and a line here; kernels, dispatch and the property
-// tests go through the list. The order is that of MaterialType.
+// Repose: the list of materials. A new one is a header, and its name in the two lines below, the parameters
+// that scenes speak of and the law that kernels run; scene keys, schema, kernels, dispatch and the property
+// tests follow.
+#ifndef REPOSE_KERNELS_MATERIAL_MATERIALS_H_PARAMETERS
+#define REPOSE_KERNELS_MATERIAL_MATERIALS_H_PARAMETERS
+#include <variant>
+
+#include "kernels/material/drucker_prager.h"
+#include "kernels/material/hencky.h"
+
+namespace repose {
+
+using MaterialParameters = std::variant<DruckerPragerParameters, HenckyParameters>;
+
+}  // namespace repose
+#endif
+
 // For kernels, once per instruction set: the including file has included Highway before.
-#if defined(HWY_TARGET) && (defined(REPOSE_KERNELS_MATERIAL_MATERIALS_H) == defined(HWY_TARGET_TOGGLE))
+#if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_MATERIAL_MATERIALS_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_MATERIAL_MATERIALS_H
 #undef REPOSE_KERNELS_MATERIAL_MATERIALS_H
 #else
@@ -18,6 +33,13 @@ namespace repose {
 namespace HWY_NAMESPACE {
 
 using Materials = std::tuple<DruckerPrager, HenckyElastic>;
+
+template <class... Law>
+constexpr bool same_order(std::tuple<Law...>*) {
+  return std::is_same_v<MaterialParameters, std::variant<typename Law::Parameters...>>;
+}
+static_assert(same_order(static_cast<Materials*>(nullptr)),
+              "the two lists name the same materials in one order");
 
 }  // namespace HWY_NAMESPACE
 }  // namespace repose

@@ -1,12 +1,12 @@
 // Repose: nodes to particles.
 //   v = sum w v_i,     C = D^-1 sum w v_i (x_i - x_p)^T           (Klar et al. 2016, eqs. 11-12)
-// C is also the velocity gradient of the MLS form. Runs keep their rows of nodes in registers; the sums over the
-// four nodes of a row are taken in the order that simd.h writes down.
+// C is also the velocity gradient of the MLS form. Runs keep their rows of nodes in registers; the sums over
+// the four nodes of a row are taken in the order that simd.h writes down.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/gather.cpp"
-#include "kernels/base/targets.h"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "kernels/base/targets.h"
 
 #include "kernels/base/simd.h"
 #include "kernels/layout/stencil.h"
@@ -26,8 +26,8 @@ struct Staged {
 
 /// Weighted sums over the stencil of the node values and of their first moments about the centre node.
 template <class Stencil, class T>
-REPOSE_INLINE void sum_stencil(const Row<T> (&rows)[Stencil::kWidth * Stencil::kWidth], const Row<T>& z_positions,
-                               std::size_t lane, Staged<T>& staged) {
+REPOSE_INLINE void sum_stencil(const Row<T> (&rows)[Stencil::kWidth * Stencil::kWidth],
+                               const Row<T>& z_positions, std::size_t lane, Staged<T>& staged) {
   static_assert(Stencil::kWidth == 3 && Stencil::kCenter == 1);
   const T* wx = staged.stencil.weight[0] + 4 * lane;
   const T* wy = staged.stencil.weight[1] + 4 * lane;
@@ -50,7 +50,8 @@ REPOSE_INLINE void sum_stencil(const Row<T> (&rows)[Stencil::kWidth * Stencil::k
 }
 
 template <class Stencil, class T>
-REPOSE_INLINE void finish(const GatherInput<T>& in, const Staged<T>& staged, std::size_t first, std::size_t lanes) {
+REPOSE_INLINE void finish(const GatherInput<T>& in, const Staged<T>& staged, std::size_t first,
+                          std::size_t lanes) {
   using P = Pack<T>;
   P mass, v[3];
   load_interleaved(staged.sums[0], mass, v[0], v[1], v[2]);
@@ -97,7 +98,9 @@ void gather(const GatherInput<T>& in, const T* arena) {
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
-  table.transfer[0][0].gather = gather<QuadraticStencil, ApicTransfer, T>;
+  for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
+    table.transfer[s][t].gather = gather<Stencil, Transfer, T>;
+  });
 }
 
 void fill(KernelTables& tables) {

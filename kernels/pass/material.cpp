@@ -2,9 +2,9 @@
 // effect may act between them; all work on the strain channel in place, a pack of particles at a time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/material.cpp"
-#include "kernels/base/targets.h"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "kernels/base/targets.h"
 
 #include "kernels/material/materials.h"
 #include "kernels/pass/tables.h"
@@ -71,7 +71,7 @@ void stress(const MaterialInput<T>& in) {
 template <class Material, class T>
 MaterialKernels<T> material_kernels() {
   MaterialKernels<T> table{trial<T>, nullptr, stress<Material, T>};
-  if constexpr (Material::kPlastic) table.project = project<Material, T>;
+  if constexpr (Material::Parameters::kYields) table.project = project<Material, T>;
   return table;
 }
 
@@ -80,7 +80,8 @@ void fill_precision(Kernels<T>& table) {
   static_assert(std::tuple_size_v<Materials> == Kernels<T>::kMaterials);
   [&]<std::size_t... k>(std::index_sequence<k...>) {
     ((table.material[k] = material_kernels<std::tuple_element_t<k, Materials>, T>()), ...);
-  }(std::make_index_sequence<std::tuple_size_v<Materials>>());
+  }
+  (std::make_index_sequence<std::tuple_size_v<Materials>>());
 }
 
 void fill(KernelTables& tables) {

@@ -1,9 +1,9 @@
 // Repose: passes over nodes: between an arena and the blocks it covers, and over the nodes of one block.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/nodes.cpp"
-#include "kernels/base/targets.h"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "kernels/base/targets.h"
 
 #include <bit>
 #include <limits>
@@ -53,8 +53,8 @@ void load_arena(T* arena, std::uint64_t rows, const T* const blocks[kNeighbours]
     const RowPlace place = place_of(bit / kArenaSide, bit % kArenaSide);
     T* to = arena + bit * kArenaRow;
     const T* const* const along_z = blocks + place.neighbour;
-    // The row of the block at +1 first, since its fourth node falls on the next arena row and is overwritten there;
-    // the row of the block at -1 last, for its first three nodes would fall before this one.
+    // The row of the block at +1 first, since its fourth node falls on the next arena row and is overwritten
+    // there; the row of the block at -1 last, for its first three nodes would fall before this one.
     store_row(along_z[2] ? load_row(along_z[2] + place.row) : zero, to + 5 * kNodeValues);
     store_row(along_z[1] ? load_row(along_z[1] + place.row) : zero, to + kNodeValues);
     for (int value = 0; value < kNodeValues; ++value) {
@@ -63,8 +63,8 @@ void load_arena(T* arena, std::uint64_t rows, const T* const blocks[kNeighbours]
   }
 }
 
-/// v = p/m (Klar et al. 2016, eq. 9). A node lighter than `least_mass` is emptied: its momentum is below what the
-/// sums around it round away, and a velocity from so few digits would be noise.
+/// v = p/m (Klar et al. 2016, eq. 9). A node lighter than `least_mass` is emptied: its momentum is below what
+/// the sums around it round away, and a velocity from so few digits would be noise.
 template <class T>
 std::uint64_t normalize(T* nodes, T least_mass) {
   using P = Pack<T>;

@@ -1,10 +1,10 @@
-// Repose: passes over particles that belong to no material and no transfer: moving them, deciding whether a step
-// may be accepted, and the two halves of the volume correction.
+// Repose: passes over particles that belong to no material and no transfer: moving them, deciding whether a
+// step may be accepted, and the two halves of the volume correction.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/particles.cpp"
-#include "kernels/base/targets.h"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "kernels/base/targets.h"
 
 #include <limits>
 
@@ -18,7 +18,8 @@ namespace {
 
 /// x += dt v-bar (Klar et al. 2016, eq. 13), in cells.
 template <class T>
-void advance(const ParticleSpan<T>& particles, const T* const velocity[3], T cells_per_velocity, Motion<T>& motion) {
+void advance(const ParticleSpan<T>& particles, const T* const velocity[3], T cells_per_velocity,
+             Motion<T>& motion) {
   using P = Pack<T>;
   P speed(motion.speed_squared), gradient(motion.gradient_squared), low(motion.lowest), high(motion.highest);
   const P scale(cells_per_velocity);

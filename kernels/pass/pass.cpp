@@ -32,9 +32,12 @@ const char* target_name(Target target) {
 
 bool target_supported(Target target) {
   switch (target) {
-    case Target::kBaseline: return true;
-    case Target::kAvx2: return (hwy::SupportedTargets() & HWY_AVX2) != 0;
-    case Target::kAvx512: return (hwy::SupportedTargets() & HWY_AVX3) != 0;
+    case Target::kBaseline:
+      return true;
+    case Target::kAvx2:
+      return (hwy::SupportedTargets() & HWY_AVX2) != 0;
+    case Target::kAvx512:
+      return (hwy::SupportedTargets() & HWY_AVX3) != 0;
   }
   return false;
 }

@@ -1,16 +1,20 @@
 // Repose: the kernels as the engine calls them: plain function pointers, one table per instruction set and
-// precision. The unit is a span of particles of one block, or one block of nodes; data stay in cache from pass to
-// pass, so materials, transfers and stencils multiply here as calls and not as templates.
-// Nothing in kernels/ allocates, throws, logs or knows of threads.
+// precision. The unit is a span of particles of one block, or one block of nodes; data stay in cache from pass
+// to pass, so materials, transfers and stencils multiply here as calls and not as templates. Nothing in
+// kernels/ allocates, throws, logs or knows of threads.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <variant>
 
 #include "kernels/layout/node_block.h"
 #include "kernels/layout/particle_span.h"
+#include "kernels/layout/stencil.h"
+#include "kernels/material/materials.h"
+#include "kernels/transfer/transfers.h"
 
 namespace repose {
 
@@ -31,9 +35,9 @@ inline constexpr std::size_t kChunk = 256;
 /// What both transfers need to know of the lattice.
 template <class Real>
 struct Lattice {
-  Real spacing;       ///< dx, m
-  Real axis_scale[3]; ///< D^-1 dx in 1/m per axis; 0 on the single-node axis of plane strain
-  int flat_axis;      ///< that axis, or -1
+  Real spacing;        ///< dx, m
+  Real axis_scale[3];  ///< D^-1 dx in 1/m per axis; 0 on the single-node axis of plane strain
+  int flat_axis;       ///< that axis, or -1
 };
 
 /// Particles to nodes.
@@ -67,24 +71,26 @@ struct Motion {
 /// One material's passes over a span, all on the strain channel in place.
 template <class Real>
 struct MaterialInput {
-  const void* constants;                         ///< the material's Constants<Real>
+  const void* constants;  ///< the material's Constants<Real>
   Real* strain[kStrainComponents];
-  const Real* affine[kAffineComponents];         ///< velocity gradient, 1/s
-  Real* stress[kStrainComponents];               ///< out, Pa
+  const Real* affine[kAffineComponents];  ///< velocity gradient, 1/s
+  Real* stress[kStrainComponents];        ///< out, Pa
   Real dt;
   std::size_t count;
 };
 
 template <class Real>
 struct MaterialKernels {
-  void (*trial)(const MaterialInput<Real>&);    ///< strain <- elastic trial strain after dt of the gradient
-  void (*project)(const MaterialInput<Real>&);  ///< strain <- the strain that the yield surface allows; may be null
-  void (*stress)(const MaterialInput<Real>&);   ///< stress <- tau(strain)
+  void (*trial)(const MaterialInput<Real>&);  ///< strain <- elastic trial strain after dt of the gradient
+  void (*project)(
+      const MaterialInput<Real>&);  ///< strain <- the strain that the yield surface allows; may be null
+  void (*stress)(const MaterialInput<Real>&);  ///< stress <- tau(strain)
 };
 
 template <class Real>
 struct TransferKernels {
-  /// Adds mass and momentum to the arena; sets the bit x * 8 + y of `rows` for each row touched; returns the runs.
+  /// Adds mass and momentum to the arena; sets the bit x * 8 + y of `rows` for each row touched; returns the
+  /// runs.
   std::size_t (*scatter)(const ScatterInput<Real>&, Real* arena, std::uint64_t& rows);
   void (*gather)(const GatherInput<Real>&, const Real* arena);
 };
@@ -101,13 +107,16 @@ struct VelocityBounds {
 /// Every kernel of one instruction set and precision.
 template <class Real>
 struct Kernels {
-  static constexpr int kStencils = 1, kTransfers = 1, kMaterials = 2;
+  static constexpr int kStencils = std::tuple_size_v<Stencils>;
+  static constexpr int kTransfers = std::tuple_size_v<Transfers>;
+  static constexpr int kMaterials = std::variant_size_v<MaterialParameters>;
   TransferKernels<Real> transfer[kStencils][kTransfers];
   MaterialKernels<Real> material[kMaterials];
 
-  void (*advance)(const ParticleSpan<Real>&, const Real* const velocity[3], Real cells_per_velocity, Motion<Real>&);
-  /// Index of the first particle whose trial motion must not be accepted, or count: it would cross more than a cell,
-  /// det(I + dt grad v) <= 0, or a value is not finite.
+  void (*advance)(const ParticleSpan<Real>&, const Real* const velocity[3], Real cells_per_velocity,
+                  Motion<Real>&);
+  /// Index of the first particle whose trial motion must not be accepted, or count: it would cross more than a
+  /// cell, det(I + dt grad v) <= 0, or a value is not finite.
   std::size_t (*inspect)(const Real* const velocity[3], const Real* const affine[9], std::size_t count, Real dt,
                          Real spacing);
   void (*open_volume)(Real* const strain[6], const Real* gained, Real* trace, std::size_t count);
@@ -116,7 +125,8 @@ struct Kernels {
   void (*add_arena)(const Real* arena, std::uint64_t rows, Real* const blocks[kNeighbours]);
   void (*load_arena)(Real* arena, std::uint64_t rows, const Real* const blocks[kNeighbours]);
 
-  /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 + y*4 + z.
+  /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 +
+  /// y*4 + z.
   std::uint64_t (*normalize)(Real* nodes, Real least_mass);
   void (*accelerate)(Real* nodes, const Real change[3]);
   void (*bound)(const Real* nodes, VelocityBounds<Real>&);

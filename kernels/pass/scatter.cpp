@@ -1,11 +1,12 @@
 // Repose: particles to nodes. Node i of the stencil receives mass w m and momentum
-//   w (m v + (m C - dt V0 D^-1 tau)(x_i - x_p))          (Klar et al. 2016, eqs. 7-9; the stress term of Hu et al. 2018)
+//   w (m v + (m C - dt V0 D^-1 tau)(x_i - x_p))          (Klar et al. 2016, eqs. 7-9; the stress term of Hu et
+//   al. 2018)
 // as rows of four nodes. Particles with one base node (a run) add up in registers and touch memory once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"
-#include "kernels/base/targets.h"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "kernels/base/targets.h"
 
 #include "kernels/base/simd.h"
 #include "kernels/layout/stencil.h"
@@ -21,24 +22,26 @@ namespace {
 template <class T>
 struct Staged {
   static constexpr std::size_t kLanes = Pack<T>::size();
-  alignas(64) T center[4 * kLanes];     // m, and the momentum that the centre node would get
-  alignas(64) T slope[3][4 * kLanes];   // 0, and its change per cell along x, y, z
+  alignas(64) T center[4 * kLanes];    // m, and the momentum that the centre node would get
+  alignas(64) T slope[3][4 * kLanes];  // 0, and its change per cell along x, y, z
   StencilPack<T> stencil;
 };
 
-template <class Stencil, class T>
+template <class Stencil, class Transfer, class T>
 REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size_t lanes, Staged<T>& out) {
   using P = Pack<T>;
   locate<Stencil>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
   const P mass(in.mass), mass_per_cell(in.mass * in.lattice.spacing), zero(T(0));
   static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-  P momentum[3], slope[3][3];
+  P momentum[3], slope[3][3], c[3][3];
+  HWY_UNROLL(9)
+  for (int k = 0; k < 9; ++k) c[k / 3][k % 3] = P::load_first(in.particles.affine[k] + first, lanes);
   HWY_UNROLL(3)
   for (int row = 0; row < 3; ++row) {
     momentum[row] = mass * P::load_first(in.particles.velocity[row] + first, lanes);
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
-      const P affine = P::load_first(in.particles.affine[3 * row + axis] + first, lanes);
+      const P affine = Transfer::told(c, row, axis);
       const P tau = P::load_first(in.stress[kSymmetric[row][axis]] + first, lanes);
       const P impulse_per_cell(in.impulse_volume * in.lattice.axis_scale[axis]);
       slope[axis][row] = fnma(impulse_per_cell, tau, mass_per_cell * affine);
@@ -83,11 +86,13 @@ REPOSE_INLINE void add_particle(const Staged<T>& from, std::size_t lane, const R
     };
     [&]<int... j>(std::integer_sequence<int, j...>) {
       (add_row(std::integral_constant<int, j>()), ...);
-    }(std::make_integer_sequence<int, kWidth>());
+    }
+    (std::make_integer_sequence<int, kWidth>());
   };
   [&]<int... i>(std::integer_sequence<int, i...>) {
     (add_plane(std::integral_constant<int, i>()), ...);
-  }(std::make_integer_sequence<int, kWidth>());
+  }
+  (std::make_integer_sequence<int, kWidth>());
 }
 
 /// Adds the rows of a run to the arena and clears them.
@@ -122,7 +127,7 @@ std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched)
   for (std::size_t first = 0; first < in.particles.count; first += Pack<T>::size()) {
     const std::size_t left = in.particles.count - first;
     const std::size_t lanes = left < Pack<T>::size() ? left : Pack<T>::size();
-    stage<Stencil>(in, first, lanes, staged);
+    stage<Stencil, Transfer>(in, first, lanes, staged);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (staged.stencil.node[lane] != node) {
         if (node >= 0) flush<kWidth>(node, rows, arena, touched);
@@ -138,7 +143,9 @@ std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched)
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
-  table.transfer[0][0].scatter = scatter<QuadraticStencil, ApicTransfer, T>;
+  for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
+    table.transfer[s][t].scatter = scatter<Stencil, Transfer, T>;
+  });
 }
 
 void fill(KernelTables& tables) {

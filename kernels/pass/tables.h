@@ -1,7 +1,12 @@
 // Repose: how the files of this folder fill the tables of pass.h; nothing outside it includes this.
 #pragma once
 
+#include <tuple>
+#include <utility>
+
+#include "kernels/layout/stencil.h"
 #include "kernels/pass/pass.h"
+#include "kernels/transfer/transfers.h"
 
 namespace repose {
 
@@ -14,9 +19,29 @@ struct KernelTables {
   Kernels<Real>& of();
 };
 template <>
-inline Kernels<float>& KernelTables::of<float>() { return single; }
+inline Kernels<float>& KernelTables::of<float>() {
+  return single;
+}
 template <>
-inline Kernels<double>& KernelTables::of<double>() { return dual; }
+inline Kernels<double>& KernelTables::of<double>() {
+  return dual;
+}
+
+/// Calls visit.operator()<Stencil, Transfer>(s, t) for each pair of the two lists, at its place in the tables.
+template <class Visit>
+void for_each_transfer(Visit visit) {
+  [&]<std::size_t... s>(std::index_sequence<s...>) {
+    const auto with_transfers = [&]<std::size_t S>() {
+      [&]<std::size_t... t>(std::index_sequence<t...>) {
+        (visit.template operator()<std::tuple_element_t<S, Stencils>, std::tuple_element_t<t, Transfers>>(S, t),
+         ...);
+      }
+      (std::make_index_sequence<std::tuple_size_v<Transfers>>());
+    };
+    (with_transfers.template operator()<s>(), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<Stencils>>());
+}
 
 void fill_scatter(Target target, KernelTables& tables);
 void fill_gather(Target target, KernelTables& tables);
@@ -28,11 +53,11 @@ void fill_nodes(Target target, KernelTables& tables);
 
 /// Defines repose::fill_NAME from the function `fill` of each instruction set. The choice is an argument, not
 /// Highway's process-wide one: two engines in one process may run different sets.
-#define REPOSE_DEFINE_FILL(name)                                                      \
-  HWY_EXPORT(fill);                                                                   \
-  void fill_##name(Target target, KernelTables& tables) {                             \
-    hwy::ChosenTarget chosen;                                                         \
-    const std::int64_t bits[kTargets] = {HWY_STATIC_TARGET, HWY_AVX2, HWY_AVX3};      \
-    chosen.Update(bits[static_cast<int>(target)]);                                    \
-    (*(HWY_DISPATCH_TABLE(fill)[chosen.GetIndex()]))(tables);                         \
+#define REPOSE_DEFINE_FILL(name)                                                 \
+  HWY_EXPORT(fill);                                                              \
+  void fill_##name(Target target, KernelTables& tables) {                        \
+    hwy::ChosenTarget chosen;                                                    \
+    const std::int64_t bits[kTargets] = {HWY_STATIC_TARGET, HWY_AVX2, HWY_AVX3}; \
+    chosen.Update(bits[static_cast<int>(target)]);                               \
+    (*(HWY_DISPATCH_TABLE(fill)[chosen.GetIndex()]))(tables);                    \
   }

@@ -78,7 +78,7 @@ void expect_same_material() {
     const double size = samples.power_of_ten(-9, 0.5);
     for (Real& entry : gradient) entry = static_cast<Real>(size * samples.uniform(-1, 1));
   }
-  const typename Probe::Constants constants(DefaultParameters<typename Probe::Constants>{});
+  const typename Probe::Constants constants(typename Material::Parameters{});
   const Probe avx2(constants, Target::kAvx2), avx512(constants, Target::kAvx512);
   const auto trial = avx2.trial(strains, gradients, Real(0.5));
   EXPECT_TRUE(same_bits(trial, avx512.trial(strains, gradients, Real(0.5)))) << "trial";

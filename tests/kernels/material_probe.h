@@ -59,7 +59,7 @@ class MaterialProbe {
   /// Of an elastic material, the strains themselves.
   Strains project(const Strains& strains) const {
     Strains out = strains;
-    if constexpr (Material::kPlastic) {
+    if constexpr (Material::Parameters::kYields) {
       if (target_) return through_kernel(kernel().project, strains, {}, 0, false);
       for (auto& strain : out) strain = packed(Material::project(constants_, unpacked(strain)));
     }
@@ -126,19 +126,9 @@ std::vector<MaterialProbe<Material, Real>> probes(const Parameters& parameters) 
   return all;
 }
 
-/// Turns into a default-made value of whatever parameters a material's constants are made from.
-template <class Constants>
-struct DefaultParameters {
-  template <class Parameters>
-  requires(!std::is_same_v<Parameters, Constants>) operator const Parameters&() const {
-    static const Parameters parameters{};
-    return parameters;
-  }
-};
-
 template <class Material, class Real>
 auto default_probes() {
-  return probes<Material, Real>(DefaultParameters<typename Material::template Constants<Real>>{});
+  return probes<Material, Real>(typename Material::Parameters{});
 }
 
 /// The sand of the golden values: E = 3.537e5, nu = 0.3, phi = 30 degrees.

@@ -22,8 +22,8 @@ double motion_left(const Diagnostics& d, double height) {
   return d.kinetic_energy / (d.mass * kGravity * 0.5 * height);
 }
 
-/// (r_end - r_0)/r_0 after the column has come to rest. A column that hardly yields goes on swinging: then the front
-/// is that of the moment.
+/// (r_end - r_0)/r_0 after the column has come to rest. A column that hardly yields goes on swinging: then the
+/// front is that of the moment.
 double axisymmetric_runout(double aspect, const std::string& phi, bool rests = true) {
   const Scene scene =
       scene_file("column.json", {"parameters.aspect=" + std::to_string(aspect), "parameters.phi=" + phi});

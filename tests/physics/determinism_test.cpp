@@ -49,6 +49,8 @@ std::vector<Case> cases() {
       {"two_bodies", nullptr, kTwoBodies, {}},
       {"two_bodies_double", nullptr, kTwoBodies, {"grid.precision=double"}},
       {"column", "column.json", nullptr, {"parameters.cells=10", "parameters.aspect=2"}},
+      {"hourglass", "hourglass.json", nullptr, {"grid.spacing=0.006"}},
+      {"bunny", "bunny.json", nullptr, {"grid.spacing=0.01"}},
   };
 }
 

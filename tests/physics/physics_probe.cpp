@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
-#include <set>
-#include <utility>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <numbers>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace repose {
 namespace {
@@ -118,7 +118,8 @@ double front_radius(const PointCloud& points, double volume, double spacing) {
     const auto [i, j] = waiting.back();
     waiting.pop_back();
     radius = std::max(radius, (std::hypot(i + 0.5, j + 0.5) + 0.5) * spacing);
-    for (const auto& next : {std::pair{i + 1, j}, std::pair{i - 1, j}, std::pair{i, j + 1}, std::pair{i, j - 1}}) {
+    for (const auto& next :
+         {std::pair{i + 1, j}, std::pair{i - 1, j}, std::pair{i, j + 1}, std::pair{i, j - 1}}) {
       const auto found = columns.find(next);
       if (found == columns.end() || found->second < half) continue;
       if (seen.insert(next).second) waiting.push_back(next);

@@ -36,12 +36,12 @@ Bins rings(const PointCloud& points, double particle_volume, double width);
 /// Per slab across x, from x = 0.
 Bins slabs(const PointCloud& points, double particle_volume, double width);
 
-/// Radius of the front of a heap about the y axis: the far side of the outermost column of cells (dx wide) that is still
-/// covered by a cell of material at half of the seeded density. Only columns that hang together with the one at the
-/// axis count, so that strays do not.
+/// Radius of the front of a heap about the y axis: the far side of the outermost column of cells (dx wide) that
+/// is still covered by a cell of material at half of the seeded density. Only columns that hang together with
+/// the one at the axis count, so that strays do not.
 double front_radius(const PointCloud& points, double particle_volume, double spacing);
-/// The same by rings: the end of the outermost ring whose mean cover, with its neighbours', is half a cell. Smaller,
-/// since a front is never a circle.
+/// The same by rings: the end of the outermost ring whose mean cover, with its neighbours', is half a cell.
+/// Smaller, since a front is never a circle.
 double front_ring(const PointCloud& points, double particle_volume, double spacing);
 /// The same along x for a slab one cell thick.
 double front_length(const PointCloud& points, double particle_volume, double spacing);
