@@ -37,7 +37,10 @@ Result<void> StepPlan<Real>::validate() const {
   for (const auto& passes : scatter) {
     std::set<std::string> known = after_order;
     if (auto result = follow_all(passes, known); !result) return result;
-    on_nodes.insert(known.begin(), known.end());
+    // What a chunk hands on in scratch ends with it; what it left on the nodes stays.
+    for (const std::string& quantity : known) {
+      if (quantity.starts_with("node ")) on_nodes.insert(quantity);
+    }
   }
   if (auto result = follow_all(nodes, on_nodes); !result) return result;
   for (const auto& passes : gather) {

@@ -28,8 +28,8 @@ NodePass<float> node_pass(const std::string& name, std::vector<std::string> read
 StepPlan<float> sound_plan() {
   StepPlan<float> plan;
   plan.scatter = {{particle_pass("stress", {"strain"}, {"tau"}),
-                   particle_pass("scatter", {"position", "tau"}, {"momentum"})}};
-  plan.nodes = {node_pass("update", {"momentum"}, {"node velocity"})};
+                   particle_pass("scatter", {"position", "tau"}, {"node momentum"})}};
+  plan.nodes = {node_pass("update", {"node momentum"}, {"node velocity"})};
   plan.gather = {{particle_pass("gather", {"node velocity"}, {"velocity"})}};
   return plan;
 }
@@ -66,6 +66,12 @@ TEST(StepPlan, SetsDoNotProvideForEachOther) {
   StepPlan<float> plan = sound_plan();
   plan.gather = {{particle_pass("a", {"node velocity"}, {"trace"})}, {particle_pass("b", {"trace"}, {})}};
   EXPECT_EQ(refusal(plan), "stage 'b' reads 'trace', which no earlier stage provides");
+}
+
+TEST(StepPlan, GatherReadsScratchOfTheScatter_IsRefused) {
+  StepPlan<float> plan = sound_plan();
+  plan.gather[0].push_back(particle_pass("late", {"tau"}, {}));
+  EXPECT_EQ(refusal(plan), "stage 'late' reads 'tau', which no earlier stage provides");
 }
 
 TEST(StepPlan, OrderPasses_ProvideForAll) {
