@@ -80,11 +80,16 @@ Json::Value* find_element(Json::Value& list, const std::string& step) {
   return nullptr;
 }
 
-/// What `step` leads to; a new null value for a new key of an object where `may_create`; else null.
-Json::Value* find_step(Json::Value& value, const std::string& step, bool may_create) {
+/// What `step` leads to. An object gets a new key where there is none, with an object in it if the path goes on
+/// by a name: "output.vtp=true" works on a scene without "output". A misspelt key then meets the reader like
+/// any other.
+Json::Value* find_step(Json::Value& value, const std::string& step, const std::string* following,
+                       std::ptrdiff_t offset) {
   if (value.isArray()) return find_element(value, step);
   if (!value.isObject()) return nullptr;
-  return may_create || value.isMember(step) ? &value[step] : nullptr;
+  if (value.isMember(step) || following == nullptr) return &value[step];
+  const bool index = following->find_first_not_of("0123456789") == std::string::npos;
+  return index ? nullptr : &(value[step] = parse_value("{}", offset));
 }
 
 std::string missing_text(const Json::Value& value, const std::string& step, const std::string& reached) {
@@ -108,8 +113,7 @@ void apply(const std::string& argument, Json::Value& root, std::ptrdiff_t offset
   Json::Value* target = &root;
   std::string reached;
   for (const std::string& step : steps) {
-    const bool last = &step == &steps.back();
-    Json::Value* next = find_step(*target, step, last);
+    Json::Value* next = find_step(*target, step, &step == &steps.back() ? nullptr : &step + 1, offset);
     if (next == nullptr) {
       complaints.add(offset, "", missing_text(*target, step, reached));
       return;

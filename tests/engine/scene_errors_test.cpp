@@ -251,10 +251,8 @@ TEST(SceneErrors, Override_PlaceIsTheOption) {
             "--set grid.spacing=-1: grid.spacing: -1 is out of range; expected a number in m, greater than 0");
   EXPECT_EQ(override_errors("grid.spacng=1"),
             "--set grid.spacng=1: grid.spacng: unknown key; did you mean \"spacing\"?");
-  EXPECT_EQ(
-      override_errors("output.ply=true"),
-      "--set output.ply=true: the scene has no \"output\"; the nearest is \"bodies\"; known are \"bodies\", "
-      "\"colliders\", \"grid\", \"materials\", \"name\", \"repose\"");
+  EXPECT_EQ(override_errors("outptu.ply=true"),
+            "--set outptu.ply=true: outptu: unknown key; did you mean \"output\"?");
   EXPECT_EQ(override_errors("colliders.flor.friction=1"),
             "--set colliders.flor.friction=1: \"colliders\" has no \"flor\" among its 1 elements, which count "
             "from 0; "

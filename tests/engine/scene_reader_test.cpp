@@ -158,6 +158,11 @@ TEST(SceneReader, Overrides_ReachByIndexAndByName) {
   EXPECT_EQ(scene.name, "run2");
 }
 
+TEST(SceneReader, OverrideBelowAKeyThatIsNotThere_MakesIt) {
+  EXPECT_TRUE(read(kSmall, {"output.vtp=true"}).output.vtp);
+  EXPECT_EQ(read(kSmall, {"gravity.acceleration=[0, 0, 1]"}).effect<Gravity>().acceleration, Vec3(0, 0, 1));
+}
+
 TEST(SceneReader, Overrides_ChangeParameters) {
   const Scene scene = read(kWhole, {"parameters.a=1"});
   EXPECT_EQ(scene.bodies[0].shape.center, Vec3(0, 2, 1));
