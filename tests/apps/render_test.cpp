@@ -265,7 +265,7 @@ TEST_F(Pictures, Png_ReadBack_SamePixels) {
 }
 
 TEST_F(Pictures, Film_OfTwelvePictures_IsReadByFfprobe) {
-  if (std::system("command -v ffmpeg ffprobe > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  ASSERT_EQ(std::system("command -v ffmpeg ffprobe > /dev/null"), 0) << "install ffmpeg";
   add_heap(500);
   const Image image = render();
   Result<Film> film = Film::start(path("a b'.mp4"), image.width, image.height, 24);
