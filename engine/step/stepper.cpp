@@ -25,9 +25,11 @@ template <class Real>
 Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
     : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {}
 
+/// Calls visit(set, chunk) for the particles of an owner; `next` is the owner whose turn it is then.
 template <class Real>
 template <class Visit>
-void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, Real dt, Visit visit) {
+void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, std::size_t next, Real dt,
+                                   Visit visit) {
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     ParticleSet<Real>& set = state.sets[k];
     const std::size_t end = set.begin[owner + 1];
@@ -36,6 +38,8 @@ void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, Real d
                         scratch(), dt,    state.spacing,
                         {},        {},    {},
                         {},        {},    {}};
+      const std::size_t after = end - first > kChunk ? first + kChunk : set.begin[next];
+      chunk.particles.ahead = static_cast<std::ptrdiff_t>(after) - static_cast<std::ptrdiff_t>(first);
       visit(k, chunk);
     }
   }
@@ -113,18 +117,20 @@ void Stepper<Real>::scatter(State<Real>& state, Real dt) {
   runs_.assign(state.grid.owners().size(), 0);
   for (int colour = 0; colour < 8; ++colour) {
     const auto owners = state.grid.colour(colour);
-    threads_.for_each(owners.size(),
-                      [&](std::size_t i) { scatter_block(state, static_cast<std::size_t>(owners[i]), dt); });
+    threads_.for_each(owners.size(), [&](std::size_t i) {
+      const std::size_t next = i + 1 < owners.size() ? i + 1 : i;
+      scatter_block(state, static_cast<std::size_t>(owners[i]), static_cast<std::size_t>(owners[next]), dt);
+    });
   }
 }
 
 template <class Real>
-void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, Real dt) {
+void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt) {
   Real* arena = scratch().arena.data();
   std::memset(arena, 0, kArenaValues * sizeof(Real));
   std::uint64_t rows = 0;
   std::size_t runs = 0;
-  for_each_chunk(state, owner, dt, [&](std::size_t k, Chunk<Real>& chunk) {
+  for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
     for (const auto& pass : plan_.scatter[k]) pass.run(chunk);
     rows |= chunk.rows;
     runs += chunk.runs;
@@ -206,7 +212,7 @@ std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::si
   const Lattice<Real> lattice = make_lattice(state, plan_.transfer);
   const auto kernel = plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gather;
   std::optional<Offender> offender;
-  for_each_chunk(state, owner, dt, [&](std::size_t, Chunk<Real>& chunk) {
+  for_each_chunk(state, owner, owner, dt, [&](std::size_t, Chunk<Real>& chunk) {
     if (offender) return;
     GatherInput<Real> in{chunk.particles, lattice, {}, {}};
     for (std::size_t axis = 0; axis < 3; ++axis) in.velocity[axis] = mine.velocity.data() + axis * kChunk;
@@ -278,7 +284,8 @@ template <class Real>
 Motion<Real> Stepper<Real>::gather_block(State<Real>& state, std::size_t owner, Real dt) {
   const bool two_velocities = load_arenas(state, owner, scratch());
   Motion<Real> motion;
-  for_each_chunk(state, owner, dt, [&](std::size_t k, Chunk<Real>& chunk) {
+  const std::size_t next = std::min(owner + 1, state.grid.owners().size() - 1);
+  for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
     chunk.two_velocities = two_velocities;
     chunk.motion = motion;
     for (const auto& pass : plan_.gather[k]) pass.run(chunk);

@@ -55,7 +55,7 @@ class Stepper {
 
  private:
   void scatter(State<Real>& state, Real dt);
-  void scatter_block(State<Real>& state, std::size_t owner, Real dt);
+  void scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt);
   void update_nodes(State<Real>& state, Real dt);
   std::optional<Offender> inspect(State<Real>& state, Real dt);
   std::optional<Offender> inspect_block(State<Real>& state, std::size_t owner, Real dt);
@@ -69,7 +69,7 @@ class Stepper {
   void finish(State<Real>& state, Real dt);
   Scratch<Real>& scratch() { return scratch_[static_cast<std::size_t>(Threads::index())]; }
   template <class Visit>
-  void for_each_chunk(State<Real>& state, std::size_t owner, Real dt, Visit visit);
+  void for_each_chunk(State<Real>& state, std::size_t owner, std::size_t next, Real dt, Visit visit);
 
   StepPlan<Real> plan_;
   Threads threads_;

@@ -9,6 +9,7 @@ MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, Chunk<
   in.constants = material.constants.get();
   in.dt = chunk.dt;
   in.count = chunk.particles.count;
+  in.ahead = chunk.particles.ahead;
   for (int k = 0; k < kStrainComponents; ++k) {
     in.strain[k] = chunk.particles.strain[k];
     in.stress[k] = chunk.scratch.stress.data() + static_cast<std::size_t>(k) * kChunk;

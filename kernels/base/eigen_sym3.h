@@ -83,53 +83,6 @@ REPOSE_INLINE Sym3<N> compose(const Eigen3<N>& e) {
   return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
 }
 
-/// Below this Frobenius norm the polynomials of log1p and expm1, of degree 6, are exact to the precision.
-template <class T>
-inline constexpr T kSmallMatrix = sizeof(T) == 4 ? T(0.05) : T(3e-3);
-
-/// log(I + e)/2, the Hencky strain of b = I + e. Eigenvalues of b below `floor` are raised to it, so that a
-/// crushed particle stays finite.
-template <class N>
-REPOSE_INLINE Sym3<N> half_log1p(const Sym3<N>& e, Scalar<N> floor) {
-  using T = Scalar<N>;
-  const auto large = !(square_norm(e) <= N(kSmallMatrix<T> * kSmallMatrix<T>));
-  // e/2 - e^2/4 + e^3/6 - e^3 (e/8 - e^2/10 + e^3/12)
-  const Sym3<N> e2 = product_of_commuting(e, e);
-  const Sym3<N> e3 = product_of_commuting(e2, e);
-  const Sym3<N> high = fma(N(T(1) / 12), e3, fma(N(T(-0.1)), e2, N(T(0.125)) * e));
-  const Sym3<N> low = fma(N(T(1) / 6), e3, fma(N(T(-0.25)), e2, N(T(0.5)) * e));
-  Sym3<N> result = fma(N(T(-1)), product_of_commuting(e3, high), low);
-  if (any(large)) {
-    Eigen3<N> eigen = eigen_sym3(e);
-    const N lowest(floor - T(1));
-    HWY_UNROLL(3)
-    for (N& value : eigen.value) value = N(T(0.5)) * log1p(max(value, lowest));
-    result = select(large, compose(eigen), result);
-  }
-  return result;
-}
-
-/// exp(2 eps) - I, the inverse of half_log1p.
-template <class N>
-REPOSE_INLINE Sym3<N> expm1_twice(const Sym3<N>& eps) {
-  using T = Scalar<N>;
-  const Sym3<N> y = eps + eps;
-  const auto large = !(square_norm(y) <= N(kSmallMatrix<T> * kSmallMatrix<T>));
-  // y + y^2/2 + y^3/6 + y^3 (y/24 + y^2/120 + y^3/720)
-  const Sym3<N> y2 = product_of_commuting(y, y);
-  const Sym3<N> y3 = product_of_commuting(y2, y);
-  const Sym3<N> high = fma(N(T(1) / 720), y3, fma(N(T(1) / 120), y2, N(T(1) / 24) * y));
-  const Sym3<N> low = fma(N(T(1) / 6), y3, fma(N(T(0.5)), y2, y));
-  Sym3<N> result = product_of_commuting(y3, high) + low;
-  if (any(large)) {
-    Eigen3<N> eigen = eigen_sym3(y);
-    HWY_UNROLL(3)
-    for (N& value : eigen.value) value = expm1(value);
-    result = select(large, compose(eigen), result);
-  }
-  return result;
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace repose
 HWY_AFTER_NAMESPACE();

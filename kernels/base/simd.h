@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "hwy/cache_control.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace repose {
 namespace HWY_NAMESPACE {
@@ -45,6 +47,8 @@ struct Pack {
 
   REPOSE_INLINE static Pack load(const T* from) { return hn::LoadU(PackTag<T>(), from); }
   REPOSE_INLINE void store(T* to) const { hn::StoreU(raw, PackTag<T>(), to); }
+  /// Asks memory for what a later load will read; any address will do.
+  REPOSE_INLINE static void prefetch(const T* from) { hwy::Prefetch(from); }
 
   /// The first `count` lanes from memory, zero beyond; memory beyond is not read.
   REPOSE_INLINE static Pack load_first(const T* from, std::size_t count) {

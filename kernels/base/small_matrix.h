@@ -1,7 +1,4 @@
-// Repose: symmetric 3x3 matrices of numbers or packs, and functions of them: the Hencky strain is
-// log(I + e)/2 and its inverse expm1(2 eps). Both take e near zero far more often than not, so there is a short
-// polynomial for small matrices and the eigen decomposition for the rest, chosen lane by lane: a result
-// never depends on its neighbours in a register.
+// Repose: symmetric 3x3 matrices of numbers or packs, written out: what the strain's update is made of.
 // For kernels, once per instruction set: the including file has included Highway before.
 #if defined(HWY_NAMESPACE) && (defined(REPOSE_KERNELS_BASE_SMALL_MATRIX_H) == defined(HWY_TARGET_TOGGLE))
 #ifdef REPOSE_KERNELS_BASE_SMALL_MATRIX_H

@@ -19,6 +19,9 @@ struct ParticleSpan {
   Real* affine[kAffineComponents];  ///< C, 1/s: the local velocity gradient that APIC carries
   Real* strain[kStrainComponents];  ///< Hencky strain log(b)/2 of the elastic part, no unit
   std::size_t count;
+  /// Distance to the particles that are worked on next: kernels ask memory for those while they do these. There
+  /// are more channels than the streams that processors follow by themselves. 0: nothing to ask for.
+  std::ptrdiff_t ahead = 0;
 };
 
 }  // namespace repose

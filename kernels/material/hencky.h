@@ -51,7 +51,7 @@ struct HenckyConstants {
 #define REPOSE_KERNELS_MATERIAL_HENCKY_H
 #endif
 
-#include "kernels/base/eigen_sym3.h"
+#include "kernels/base/matrix_function.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {

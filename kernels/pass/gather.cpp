@@ -53,10 +53,15 @@ template <class Stencil, class T>
 REPOSE_INLINE void finish(const GatherInput<T>& in, const Staged<T>& staged, std::size_t first,
                           std::size_t lanes) {
   using P = Pack<T>;
+  const auto next = static_cast<std::ptrdiff_t>(first) + in.particles.ahead;
   P mass, v[3];
   load_interleaved(staged.sums[0], mass, v[0], v[1], v[2]);
   HWY_UNROLL(3)
-  for (int row = 0; row < 3; ++row) v[row].store_first(in.velocity[row] + first, lanes);
+  for (int row = 0; row < 3; ++row) {
+    P::prefetch(in.particles.position[row] + next);
+    P::prefetch(in.particles.velocity[row] + next);
+    v[row].store_first(in.velocity[row] + first, lanes);
+  }
   HWY_UNROLL(3)
   for (int axis = 0; axis < 3; ++axis) {
     P moment[3];
@@ -65,6 +70,7 @@ REPOSE_INLINE void finish(const GatherInput<T>& in, const Staged<T>& staged, std
     HWY_UNROLL(3)
     for (int row = 0; row < 3; ++row) {
       const P c = scale * fnma(staged.stencil.from_center[axis], v[row], moment[row]);
+      P::prefetch(in.particles.affine[3 * row + axis] + next);
       c.store_first(in.affine[3 * row + axis] + first, lanes);
     }
   }

@@ -40,9 +40,16 @@ REPOSE_INLINE void for_each_pack(std::size_t count, Body body) {
 }
 
 template <class T>
+REPOSE_INLINE void prefetch_strain(const MaterialInput<T>& in, std::size_t first) {
+  HWY_UNROLL(6)
+  for (int k = 0; k < 6; ++k) Pack<T>::prefetch(in.strain[k] + (static_cast<std::ptrdiff_t>(first) + in.ahead));
+}
+
+template <class T>
 void trial(const MaterialInput<T>& in) {
   const Pack<T> dt(in.dt);
   for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+    prefetch_strain(in, first);
     Mat3<Pack<T>> step;
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * Pack<T>::load_first(in.affine[k] + first, lanes);
@@ -63,6 +70,7 @@ template <class Material, class T>
 void stress(const MaterialInput<T>& in) {
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
   for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+    prefetch_strain(in, first);
     const auto strain = load_sym3<T>(in.strain, first, lanes);
     store_sym3(Material::stress(constants, strain), in.stress, first, lanes);
   });

@@ -30,7 +30,7 @@ bool target_supported(Target target);
 Target best_target();
 
 /// Particles per call: what a pass hands to the next through scratch stays in the first cache level.
-inline constexpr std::size_t kChunk = 256;
+inline constexpr std::size_t kChunk = 128;
 
 /// What both transfers need to know of the lattice.
 template <class Real>
@@ -77,6 +77,7 @@ struct MaterialInput {
   Real* stress[kStrainComponents];        ///< out, Pa
   Real dt;
   std::size_t count;
+  std::ptrdiff_t ahead = 0;  ///< as in ParticleSpan
 };
 
 template <class Real>

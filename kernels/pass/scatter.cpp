@@ -33,11 +33,17 @@ REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size
   locate<Stencil>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
   const P mass(in.mass), mass_per_cell(in.mass * in.lattice.spacing), zero(T(0));
   static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  const auto next = static_cast<std::ptrdiff_t>(first) + in.particles.ahead;
   P momentum[3], slope[3][3], c[3][3];
   HWY_UNROLL(9)
-  for (int k = 0; k < 9; ++k) c[k / 3][k % 3] = P::load_first(in.particles.affine[k] + first, lanes);
+  for (int k = 0; k < 9; ++k) {
+    P::prefetch(in.particles.affine[k] + next);
+    c[k / 3][k % 3] = P::load_first(in.particles.affine[k] + first, lanes);
+  }
   HWY_UNROLL(3)
   for (int row = 0; row < 3; ++row) {
+    P::prefetch(in.particles.velocity[row] + next);
+    P::prefetch(in.particles.position[row] + next);
     momentum[row] = mass * P::load_first(in.particles.velocity[row] + first, lanes);
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
