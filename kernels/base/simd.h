@@ -177,6 +177,30 @@ REPOSE_INLINE T smallest(Pack<T> a) {
   return hn::GetLane(hn::MinOfLanes(PackTag<T>(), a.raw));
 }
 
+/// The packs of `count` particles: for (const auto [first, lanes] : packs<T>(count)) ...
+template <class T>
+struct PackRange {
+  struct Piece {
+    std::size_t first, lanes;
+  };
+  struct Iterator {
+    std::size_t first, count;
+    REPOSE_INLINE Piece operator*() const {
+      const std::size_t left = count - first;
+      return {first, left < Pack<T>::size() ? left : Pack<T>::size()};
+    }
+    REPOSE_INLINE void operator++() { first += Pack<T>::size(); }
+    REPOSE_INLINE bool operator!=(const Iterator& end) const { return first < end.count; }
+  };
+  std::size_t count;
+  REPOSE_INLINE Iterator begin() const { return {0, count}; }
+  REPOSE_INLINE Iterator end() const { return {count, count}; }
+};
+template <class T>
+REPOSE_INLINE PackRange<T> packs(std::size_t count) {
+  return {count};
+}
+
 /// 2^k for integral k that keeps the result normal.
 template <class T>
 REPOSE_INLINE Pack<T> exp2_of_integer(Pack<T> k) {

@@ -1,10 +1,15 @@
 // Repose: nodes. A block is 4x4x4 nodes, stored x outermost, z innermost, four values a node: mass and
 // momentum (later velocity). A row of four nodes along z is then sixteen consecutive numbers.
 //
-// A kernel works in an arena of 8x8x8 nodes, the block with its halo, and adds it to the blocks afterwards. The
-// particles of a block have base nodes in [-1, 4] (their own [0, 3] and one cell of drift on either side), so a
-// stencil of three nodes reaches [-1, 6]. Blocks of one of the 8 colours lie 8 nodes apart: [-1, 6] and [7, 14]
-// share no node, and two of them may be added at once as long as no more than those nodes is written.
+// A kernel works in an arena of 8x8x8 nodes, the block with its halo, and adds it to the blocks afterwards. Its
+// first node is the stencil's lowest base node. Blocks of one of the 8 colours lie 8 nodes apart and may be
+// added at once, for no two of them touch one node:
+//   linear, quadratic   the base nodes of a block's particles are in [-1, 4] (their own [0, 3] and one cell of
+//                       drift on either side), so their stencils reach [-1, 6], and the next such block [7, 14]
+//   cubic               a block owns particles from the middle of its first cell to the middle of the cell
+//                       after its last and lets them drift by half a cell: base nodes are in [0, 4], stencils
+//                       reach [0, 7]
+// No more than those nodes may be written.
 #pragma once
 
 #include <cstddef>
@@ -28,9 +33,5 @@ constexpr int neighbour_index(int x, int y, int z) {
   return (x + 1) * 9 + (y + 1) * 3 + (z + 1);
 }
 inline constexpr int kSelf = neighbour_index(0, 0, 0);
-
-/// Lowest and highest base node of the particles that a block may hold.
-inline constexpr int kLowestBase = -1;
-inline constexpr int kHighestBase = 4;
 
 }  // namespace repose

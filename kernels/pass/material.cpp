@@ -30,15 +30,6 @@ REPOSE_INLINE void store_sym3(const Sym3<Pack<T>>& a, T* const to[6], std::size_
   a.zz.store_first(to[5] + first, lanes);
 }
 
-/// Calls body(first, lanes) for each pack of `count` particles.
-template <class T, class Body>
-REPOSE_INLINE void for_each_pack(std::size_t count, Body body) {
-  for (std::size_t first = 0; first < count; first += Pack<T>::size()) {
-    const std::size_t left = count - first;
-    body(first, left < Pack<T>::size() ? left : Pack<T>::size());
-  }
-}
-
 template <class T>
 REPOSE_INLINE void prefetch_strain(const MaterialInput<T>& in, std::size_t first) {
   HWY_UNROLL(6)
@@ -48,32 +39,32 @@ REPOSE_INLINE void prefetch_strain(const MaterialInput<T>& in, std::size_t first
 template <class T>
 void trial(const MaterialInput<T>& in) {
   const Pack<T> dt(in.dt);
-  for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+  for (const auto [first, lanes] : packs<T>(in.count)) {
     prefetch_strain(in, first);
     Mat3<Pack<T>> step;
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * Pack<T>::load_first(in.affine[k] + first, lanes);
     store_sym3(hencky_trial(load_sym3<T>(in.strain, first, lanes), step), in.strain, first, lanes);
-  });
+  }
 }
 
 template <class Material, class T>
 void project(const MaterialInput<T>& in) {
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
-  for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+  for (const auto [first, lanes] : packs<T>(in.count)) {
     const auto strain = load_sym3<T>(in.strain, first, lanes);
     store_sym3(Material::project(constants, strain), in.strain, first, lanes);
-  });
+  }
 }
 
 template <class Material, class T>
 void stress(const MaterialInput<T>& in) {
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
-  for_each_pack<T>(in.count, [&](std::size_t first, std::size_t lanes) HWY_ATTR {
+  for (const auto [first, lanes] : packs<T>(in.count)) {
     prefetch_strain(in, first);
     const auto strain = load_sym3<T>(in.strain, first, lanes);
     store_sym3(Material::stress(constants, strain), in.stress, first, lanes);
-  });
+  }
 }
 
 template <class Material, class T>

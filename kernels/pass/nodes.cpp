@@ -16,49 +16,64 @@ namespace repose {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Where arena row (x, y) lies in the blocks: arena coordinates 0 | 1..4 | 5..7 are the blocks at -1 | 0 | +1.
-struct RowPlace {
-  int neighbour;  // of the block at z offset -1; the next two follow
-  int row;        // offset of the row's first value in the block
+/// How an arena whose first node is `origin` lies over the blocks: node a of its axes is node local(a) of the
+/// block at offset block(a).
+template <int origin>
+struct Cover {
+  static_assert(origin == -1 || origin == 0);
+  static constexpr int block(int a) { return (a + origin + kBlockSide) / kBlockSide - 1; }
+  static constexpr int local(int a) { return (a + origin + kBlockSide) % kBlockSide; }
+
+  /// Block at z offset -1 of arena row (x, y); the next two follow.
+  static constexpr int neighbour(int x, int y) { return neighbour_index(block(x), block(y), -1); }
+  /// Offset of the row's first value in its blocks.
+  static constexpr int row(int x, int y) {
+    return (local(x) * kBlockSide + local(y)) * kBlockSide * kNodeValues;
+  }
 };
 
-REPOSE_INLINE RowPlace place_of(int x, int y) {
-  const auto block = [](int a) { return (a + 3) / 4 - 1; };
-  const int local_x = (x + 3) & 3, local_y = (y + 3) & 3;
-  return {neighbour_index(block(x), block(y), -1), (local_x * kBlockSide + local_y) * kBlockSide * kNodeValues};
-}
-
-/// Only nodes [-1, 6] are written, in pieces that end there: see node_block.h.
-template <class T>
+/// Only the nodes that stencils reach are written, in pieces that end there: see node_block.h.
+template <int origin, class T>
 void add_arena(const T* arena, std::uint64_t rows, T* const blocks[kNeighbours]) {
   for (; rows != 0; rows &= rows - 1) {
-    const int bit = std::countr_zero(rows);
-    const RowPlace place = place_of(bit / kArenaSide, bit % kArenaSide);
+    const int bit = std::countr_zero(rows), x = bit / kArenaSide, y = bit % kArenaSide;
     const T* from = arena + bit * kArenaRow;
-    T* const* const along_z = blocks + place.neighbour;
-    if (T* to = along_z[0]) add_one_node(from, to + place.row + 3 * kNodeValues);
-    if (T* to = along_z[1]) {
-      T* at = to + place.row;
-      store_row(load_row(at) + load_row(from + kNodeValues), at);
+    T* const* const along_z = blocks + Cover<origin>::neighbour(x, y);
+    const int row = Cover<origin>::row(x, y);
+    const auto add_row = [row](T* block, const T* values) {
+      if (block != nullptr) store_row(load_row(block + row) + load_row(values), block + row);
+    };
+    if constexpr (origin == 0) {
+      add_row(along_z[1], from);
+      add_row(along_z[2], from + kBlockSide * kNodeValues);
+    } else {
+      if (T* to = along_z[0]) add_one_node(from, to + row + 3 * kNodeValues);
+      add_row(along_z[1], from + kNodeValues);
+      if (T* to = along_z[2]) add_three_nodes(from + 5 * kNodeValues, to + row);
     }
-    if (T* to = along_z[2]) add_three_nodes(from + 5 * kNodeValues, to + place.row);
   }
 }
 
-template <class T>
+template <int origin, class T>
 void load_arena(T* arena, std::uint64_t rows, const T* const blocks[kNeighbours]) {
   const Row<T> zero = zero_row<T>();
   for (; rows != 0; rows &= rows - 1) {
-    const int bit = std::countr_zero(rows);
-    const RowPlace place = place_of(bit / kArenaSide, bit % kArenaSide);
+    const int bit = std::countr_zero(rows), x = bit / kArenaSide, y = bit % kArenaSide;
     T* to = arena + bit * kArenaRow;
-    const T* const* const along_z = blocks + place.neighbour;
-    // The row of the block at +1 first, since its fourth node falls on the next arena row and is overwritten
-    // there; the row of the block at -1 last, for its first three nodes would fall before this one.
-    store_row(along_z[2] ? load_row(along_z[2] + place.row) : zero, to + 5 * kNodeValues);
-    store_row(along_z[1] ? load_row(along_z[1] + place.row) : zero, to + kNodeValues);
-    for (int value = 0; value < kNodeValues; ++value) {
-      to[value] = along_z[0] ? along_z[0][place.row + 3 * kNodeValues + value] : T(0);
+    const T* const* const along_z = blocks + Cover<origin>::neighbour(x, y);
+    const int row = Cover<origin>::row(x, y);
+    const auto load = [row, zero](const T* block) { return block != nullptr ? load_row(block + row) : zero; };
+    if constexpr (origin == 0) {
+      store_row(load(along_z[1]), to);
+      store_row(load(along_z[2]), to + kBlockSide * kNodeValues);
+    } else {
+      // The row of the block at +1 first, since its fourth node falls on the next arena row and is overwritten
+      // there; the row of the block at -1 last, for its first three nodes would fall before this one.
+      store_row(load(along_z[2]), to + 5 * kNodeValues);
+      store_row(load(along_z[1]), to + kNodeValues);
+      for (int value = 0; value < kNodeValues; ++value) {
+        to[value] = along_z[0] ? along_z[0][row + 3 * kNodeValues + value] : T(0);
+      }
     }
   }
 }
@@ -132,8 +147,10 @@ void bound(const T* nodes, VelocityBounds<T>& bounds) {
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
-  table.add_arena = add_arena<T>;
-  table.load_arena = load_arena<T>;
+  for_each_stencil([&]<class Stencil>(std::size_t s) {
+    table.stencil[s].add_arena = add_arena<Stencil::kLowestBase, T>;
+    table.stencil[s].load_arena = load_arena<Stencil::kLowestBase, T>;
+  });
   table.normalize = normalize<T>;
   table.accelerate = accelerate<T>;
   table.bound = bound<T>;

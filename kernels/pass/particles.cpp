@@ -18,15 +18,13 @@ namespace {
 
 /// x += dt v-bar (Klar et al. 2016, eq. 13), in cells.
 template <class T>
-void advance(const ParticleSpan<T>& particles, const T* const velocity[3], T cells_per_velocity,
-             Motion<T>& motion) {
+void advance(const ParticleSpan<T>& particles, const T* const velocity[3], const T* const gradient[9],
+             T cells_per_velocity, Motion<T>& motion) {
   using P = Pack<T>;
-  P speed(motion.speed_squared), gradient(motion.gradient_squared), low(motion.lowest), high(motion.highest);
+  P speed(motion.speed_squared), steepest(motion.gradient_squared), low(motion.lowest), high(motion.highest);
   const P scale(cells_per_velocity);
-  for (std::size_t first = 0; first < particles.count; first += P::size()) {
-    const std::size_t left = particles.count - first;
-    const std::size_t lanes = left < P::size() ? left : P::size();
-    P square(T(0)), affine(T(0));
+  for (const auto [first, lanes] : packs<T>(particles.count)) {
+    P square(T(0)), entries(T(0));
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
       const P v = P::load_first(particles.velocity[axis] + first, lanes);
@@ -39,22 +37,20 @@ void advance(const ParticleSpan<T>& particles, const T* const velocity[3], T cel
     }
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) {
-      const P c = P::load_first(particles.affine[k] + first, lanes);
-      affine = fma(c, c, affine);
+      const P g = P::load_first(gradient[k] + first, lanes);
+      entries = fma(g, g, entries);
     }
     speed = max(speed, square);
-    gradient = max(gradient, affine);
+    steepest = max(steepest, entries);
   }
-  motion = {largest(speed), largest(gradient), smallest(low), largest(high)};
+  motion = {largest(speed), largest(steepest), smallest(low), largest(high)};
 }
 
 template <class T>
 std::size_t inspect(const T* const velocity[3], const T* const affine[9], std::size_t count, T dt, T spacing) {
   using P = Pack<T>;
   const P step(dt), most(spacing / dt), zero(T(0)), one(T(1));
-  for (std::size_t first = 0; first < count; first += P::size()) {
-    const std::size_t left = count - first;
-    const std::size_t lanes = left < P::size() ? left : P::size();
+  for (const auto [first, lanes] : packs<T>(count)) {
     Mat3<P> map;
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) {
@@ -80,9 +76,7 @@ std::size_t inspect(const T* const velocity[3], const T* const affine[9], std::s
 template <class T>
 void open_volume(T* const strain[6], const T* gained, T* trace_of_trial, std::size_t count) {
   using P = Pack<T>;
-  for (std::size_t first = 0; first < count; first += P::size()) {
-    const std::size_t left = count - first;
-    const std::size_t lanes = left < P::size() ? left : P::size();
+  for (const auto [first, lanes] : packs<T>(count)) {
     const P xx = P::load_first(strain[0] + first, lanes), yy = P::load_first(strain[3] + first, lanes),
             zz = P::load_first(strain[5] + first, lanes);
     const P third = P(T(1) / 3) * P::load_first(gained + first, lanes);
@@ -97,9 +91,7 @@ void open_volume(T* const strain[6], const T* gained, T* trace_of_trial, std::si
 template <class T>
 void close_volume(const T* const strain[6], T* gained, const T* trace_of_trial, std::size_t count) {
   using P = Pack<T>;
-  for (std::size_t first = 0; first < count; first += P::size()) {
-    const std::size_t left = count - first;
-    const std::size_t lanes = left < P::size() ? left : P::size();
+  for (const auto [first, lanes] : packs<T>(count)) {
     const P kept = P::load_first(strain[0] + first, lanes) + P::load_first(strain[3] + first, lanes) +
                    P::load_first(strain[5] + first, lanes);
     const P total = P::load_first(gained + first, lanes) + P::load_first(trace_of_trial + first, lanes);

@@ -47,23 +47,30 @@ struct ScatterInput {
   const Real* stress[kStrainComponents];  ///< Kirchhoff stress tau, Pa
   Real mass;                              ///< m of a particle, kg
   Real impulse_volume;                    ///< dt V0, s m^3
+  Real kept_stretching;                   ///< RPIC's share of (C + C^T)/2, in [0, 1]
   Lattice<Real> lattice;
 };
 
-/// Nodes to particles. Writes v and C of every particle of the span.
+/// Nodes to particles. What is a null pointer is not wanted; a pointer may be that of the particles' own
+/// channel.
 template <class Real>
 struct GatherInput {
-  ParticleSpan<Real> particles;  ///< only positions are read
+  ParticleSpan<Real> particles;  ///< positions are read, and velocities where `before` is given
   Lattice<Real> lattice;
-  Real* velocity[3];
-  Real* affine[kAffineComponents];
+  Real* velocity[3];                  ///< out: v that the particle keeps, m/s
+  Real* affine[kAffineComponents];    ///< out: C that it keeps, 1/s; only where the transfer keeps one
+  Real* moving[3];                    ///< out: sum w v_i, which moves it, m/s
+  Real* gradient[kAffineComponents];  ///< out: gradient of velocity, which strains it, 1/s; with forces by
+                                      ///< moments it is C
+  const Real* before[3];              ///< sum w v_i before forces, m/s; null unless the transfer keeps velocity
+  Real kept_velocity;                 ///< share of its own velocity that a particle keeps, in [0, 1]
 };
 
 /// What moving a span of particles did to it.
 template <class Real>
 struct Motion {
   Real speed_squared = 0;     ///< largest |v|^2, m^2/s^2
-  Real gradient_squared = 0;  ///< largest |C|^2 (Frobenius), 1/s^2
+  Real gradient_squared = 0;  ///< largest |grad v|^2 (Frobenius), 1/s^2
   Real lowest = 0;            ///< least and largest position component, cells from the block's origin
   Real highest = 0;
 };
@@ -96,6 +103,15 @@ struct TransferKernels {
   void (*gather)(const GatherInput<Real>&, const Real* arena);
 };
 
+template <class Real>
+struct StencilKernels {
+  /// Adds the rows of an arena to the blocks around it, or loads them; null blocks are passed over.
+  void (*add_arena)(const Real* arena, std::uint64_t rows, Real* const blocks[kNeighbours]);
+  void (*load_arena)(Real* arena, std::uint64_t rows, const Real* const blocks[kNeighbours]);
+  /// velocity <- sum w v_i
+  void (*interpolate)(const ParticleSpan<Real>&, int flat_axis, const Real* arena, Real* const velocity[3]);
+};
+
 /// Bounds of the velocities of a block's active nodes.
 template <class Real>
 struct VelocityBounds {
@@ -111,20 +127,18 @@ struct Kernels {
   static constexpr int kStencils = std::tuple_size_v<Stencils>;
   static constexpr int kTransfers = std::tuple_size_v<Transfers>;
   static constexpr int kMaterials = std::variant_size_v<MaterialParameters>;
+  StencilKernels<Real> stencil[kStencils];
   TransferKernels<Real> transfer[kStencils][kTransfers];
   MaterialKernels<Real> material[kMaterials];
 
-  void (*advance)(const ParticleSpan<Real>&, const Real* const velocity[3], Real cells_per_velocity,
-                  Motion<Real>&);
+  void (*advance)(const ParticleSpan<Real>&, const Real* const velocity[3], const Real* const gradient[9],
+                  Real cells_per_velocity, Motion<Real>&);
   /// Index of the first particle whose trial motion must not be accepted, or count: it would cross more than a
   /// cell, det(I + dt grad v) <= 0, or a value is not finite.
   std::size_t (*inspect)(const Real* const velocity[3], const Real* const affine[9], std::size_t count, Real dt,
                          Real spacing);
   void (*open_volume)(Real* const strain[6], const Real* gained, Real* trace, std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
-
-  void (*add_arena)(const Real* arena, std::uint64_t rows, Real* const blocks[kNeighbours]);
-  void (*load_arena)(Real* arena, std::uint64_t rows, const Real* const blocks[kNeighbours]);
 
   /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 +
   /// y*4 + z.

@@ -1,6 +1,7 @@
-// Repose: particles to nodes. Node i of the stencil receives mass w m and momentum
-//   w (m v + (m C - dt V0 D^-1 tau)(x_i - x_p))          (Klar et al. 2016, eqs. 7-9; the stress term of Hu et
-//   al. 2018)
+// Repose: particles to nodes. Node i of the stencil receives mass w m and momentum (Klar et al. 2016, eqs. 7-9)
+//   w (m v + m A (x_i - x_p)) + dt f_i,
+//   f_i = -V0 tau D^-1 w (x_i - x_p)  by moments  (Hu et al. 2018)   or   -V0 tau grad w  by gradients  (eq.
+//   18)
 // as rows of four nodes. Particles with one base node (a run) add up in registers and touch memory once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"
@@ -18,27 +19,51 @@ namespace repose {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// What decides the shape of the loops: many transfers share it.
+template <class Stencil, Affine affine, Force force>
+struct Shape {
+  static constexpr int kWidth = Stencil::kWidth;
+  static constexpr int kCenter = Stencil::kCenter;
+  static constexpr bool kAffine = affine != Affine::kNone;
+  static constexpr bool kPush = force == Force::kGradients;  ///< forces by gradients
+  static constexpr bool kSlope = kAffine || !kPush;          ///< momentum varies along the stencil
+};
+
 /// A pack of particles, turned to be read one particle at a time: four numbers each.
 template <class T>
 struct Staged {
   static constexpr std::size_t kLanes = Pack<T>::size();
   alignas(64) T center[4 * kLanes];    // m, and the momentum that the centre node would get
   alignas(64) T slope[3][4 * kLanes];  // 0, and its change per cell along x, y, z
+  alignas(64) T push[3][4 * kLanes];   // 0, and -dt V0 tau_axis / dx, which goes with the weights' slopes
   StencilPack<T> stencil;
 };
 
-template <class Stencil, class Transfer, class T>
+/// A, entry (row, axis).
+template <Affine affine, class T>
+REPOSE_INLINE Pack<T> told(const Pack<T> (&c)[3][3], int row, int axis, T kept_stretching) {
+  if constexpr (affine == Affine::kFull) return c[row][axis];
+  const Pack<T> half(T(0.5));
+  const Pack<T> spin = half * (c[row][axis] - c[axis][row]), stretch = half * (c[row][axis] + c[axis][row]);
+  return fma(Pack<T>(kept_stretching), stretch, spin);
+}
+
+template <class Stencil, Affine affine, Force force, class T>
 REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size_t lanes, Staged<T>& out) {
   using P = Pack<T>;
-  locate<Stencil>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
+  using S = Shape<Stencil, affine, force>;
+  locate<Stencil, force>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
   const P mass(in.mass), mass_per_cell(in.mass * in.lattice.spacing), zero(T(0));
+  const P push_scale(-in.impulse_volume / in.lattice.spacing);
   static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   const auto next = static_cast<std::ptrdiff_t>(first) + in.particles.ahead;
-  P momentum[3], slope[3][3], c[3][3];
-  HWY_UNROLL(9)
-  for (int k = 0; k < 9; ++k) {
-    P::prefetch(in.particles.affine[k] + next);
-    c[k / 3][k % 3] = P::load_first(in.particles.affine[k] + first, lanes);
+  P momentum[3], slope[3][3], push[3][3], c[3][3];
+  if constexpr (S::kAffine) {
+    HWY_UNROLL(9)
+    for (int k = 0; k < 9; ++k) {
+      P::prefetch(in.particles.affine[k] + next);
+      c[k / 3][k % 3] = P::load_first(in.particles.affine[k] + first, lanes);
+    }
   }
   HWY_UNROLL(3)
   for (int row = 0; row < 3; ++row) {
@@ -47,17 +72,32 @@ REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size
     momentum[row] = mass * P::load_first(in.particles.velocity[row] + first, lanes);
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
-      const P affine = Transfer::told(c, row, axis);
       const P tau = P::load_first(in.stress[kSymmetric[row][axis]] + first, lanes);
-      const P impulse_per_cell(in.impulse_volume * in.lattice.axis_scale[axis]);
-      slope[axis][row] = fnma(impulse_per_cell, tau, mass_per_cell * affine);
-      momentum[row] = fnma(slope[axis][row], out.stencil.from_center[axis], momentum[row]);
+      if constexpr (S::kAffine) {
+        slope[axis][row] = mass_per_cell * told<affine>(c, row, axis, in.kept_stretching);
+      } else {
+        slope[axis][row] = zero;
+      }
+      if constexpr (S::kPush) {
+        push[axis][row] = push_scale * tau;
+      } else {
+        const P impulse_per_cell(in.impulse_volume * in.lattice.axis_scale[axis]);
+        slope[axis][row] = fnma(impulse_per_cell, tau, slope[axis][row]);
+      }
+      if constexpr (S::kSlope) {
+        momentum[row] = fnma(slope[axis][row], out.stencil.from_center[axis], momentum[row]);
+      }
     }
   }
   store_interleaved(mass, momentum[0], momentum[1], momentum[2], out.center);
   HWY_UNROLL(3)
   for (int axis = 0; axis < 3; ++axis) {
-    store_interleaved(zero, slope[axis][0], slope[axis][1], slope[axis][2], out.slope[axis]);
+    if constexpr (S::kSlope) {
+      store_interleaved(zero, slope[axis][0], slope[axis][1], slope[axis][2], out.slope[axis]);
+    }
+    if constexpr (S::kPush) {
+      store_interleaved(zero, push[axis][0], push[axis][1], push[axis][2], out.push[axis]);
+    }
   }
 }
 
@@ -70,35 +110,57 @@ REPOSE_INLINE Row<T> step_row(const Row<T>& base, const Row<T>& slope) {
   return fma(slope, Pack<T>(T(k)), base);
 }
 
-/// Adds one particle to the rows of its run.
-template <class Stencil, class T>
-REPOSE_INLINE void add_particle(const Staged<T>& from, std::size_t lane, const Row<T>& z_positions,
-                                Row<T> (&rows)[Stencil::kWidth * Stencil::kWidth]) {
-  constexpr int kWidth = Stencil::kWidth, kCenter = Stencil::kCenter;
-  const Row<T> weight_z = spread_over_values(from.stencil.weight[2] + 4 * lane);
-  const Row<T> center = weight_z * fma(z_positions, repeat_for_nodes(from.slope[2] + 4 * lane),
-                                       repeat_for_nodes(from.center + 4 * lane));
-  const Row<T> slope_x = weight_z * repeat_for_nodes(from.slope[0] + 4 * lane);
-  const Row<T> slope_y = weight_z * repeat_for_nodes(from.slope[1] + 4 * lane);
-  const T* wx = from.stencil.weight[0] + 4 * lane;
-  const T* wy = from.stencil.weight[1] + 4 * lane;
-  const auto add_plane = [&]<int i>(std::integral_constant<int, i>) {
-    const Pack<T> w(wx[i]);
-    const Row<T> middle = step_row<i - kCenter>(center, slope_x) * w;
-    const Row<T> slope = slope_y * w;
-    const auto add_row = [&]<int j>(std::integral_constant<int, j>) {
-      Row<T>& row = rows[i * kWidth + j];
-      row = fma(step_row<j - kCenter>(middle, slope), Pack<T>(wy[j]), row);
-    };
-    [&]<int... j>(std::integer_sequence<int, j...>) {
-      (add_row(std::integral_constant<int, j>()), ...);
-    }
-    (std::make_integer_sequence<int, kWidth>());
-  };
-  [&]<int... i>(std::integer_sequence<int, i...>) {
-    (add_plane(std::integral_constant<int, i>()), ...);
+/// Calls body(std::integral_constant<int, 0>()), ... below count.
+template <int count, class Body>
+REPOSE_INLINE void unroll(Body body) {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (body(std::integral_constant<int, k>()), ...);
   }
-  (std::make_integer_sequence<int, kWidth>());
+  (std::make_integer_sequence<int, count>());
+}
+
+/// Adds one particle to the rows of its run. Along z a row does all nodes at once; then
+///   row (i, j) += wx_i wy_j (center + (i - c) slope_x + (j - c) slope_y) + (wx'_i wy_j push_x + wx_i wy'_j
+///   push_y)
+template <class S, class T>
+REPOSE_INLINE void add_particle(const Staged<T>& from, std::size_t lane, const Row<T>& z_positions,
+                                Row<T> (&rows)[S::kWidth * S::kWidth]) {
+  const std::size_t at = 4 * lane;
+  const StencilPack<T>& stencil = from.stencil;
+  const Row<T> weight_z = spread_over_values(stencil.weight[2] + at);
+  Row<T> center = repeat_for_nodes(from.center + at), slope_x, slope_y, push_x, push_y;
+  if constexpr (S::kSlope) {
+    center = weight_z * fma(z_positions, repeat_for_nodes(from.slope[2] + at), center);
+    slope_x = weight_z * repeat_for_nodes(from.slope[0] + at);
+    slope_y = weight_z * repeat_for_nodes(from.slope[1] + at);
+  } else {
+    center = weight_z * center;
+  }
+  if constexpr (S::kPush) {
+    center = fma(spread_over_values(stencil.slope[2] + at), repeat_for_nodes(from.push[2] + at), center);
+    push_x = weight_z * repeat_for_nodes(from.push[0] + at);
+    push_y = weight_z * repeat_for_nodes(from.push[1] + at);
+  }
+  unroll<S::kWidth>([&]<int i>(std::integral_constant<int, i>) {
+    const Pack<T> w(stencil.weight[0][at + i]);
+    Row<T> middle = center, slope, side;
+    if constexpr (S::kSlope) {
+      middle = step_row<i - S::kCenter>(center, slope_x);
+      slope = slope_y * w;
+    }
+    middle = middle * w;
+    if constexpr (S::kPush) {
+      middle = fma(push_x, Pack<T>(stencil.slope[0][at + i]), middle);
+      side = push_y * w;
+    }
+    unroll<S::kWidth>([&]<int j>(std::integral_constant<int, j>) {
+      Row<T>& row = rows[i * S::kWidth + j];
+      Row<T> value = middle;
+      if constexpr (S::kSlope) value = step_row<j - S::kCenter>(middle, slope);
+      row = fma(value, Pack<T>(stencil.weight[1][at + j]), row);
+      if constexpr (S::kPush) row = fma(side, Pack<T>(stencil.slope[1][at + j]), row);
+    });
+  });
 }
 
 /// Adds the rows of a run to the arena and clears them.
@@ -120,37 +182,35 @@ REPOSE_INLINE void flush(std::int32_t node, Row<T> (&rows)[kWidth * kWidth], T* 
   touched |= square << (node / kArenaSide);
 }
 
-template <class Stencil, class Transfer, class T>
+template <class Stencil, Affine affine, Force force, class T>
 std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched) {
-  constexpr int kWidth = Stencil::kWidth;
+  using S = Shape<Stencil, affine, force>;
   Staged<T> staged;
-  Row<T> rows[kWidth * kWidth];
+  Row<T> rows[S::kWidth * S::kWidth];
   HWY_UNROLL(16)
-  for (int r = 0; r < kWidth * kWidth; ++r) rows[r] = zero_row<T>();
-  const Row<T> z_positions = node_positions(T(Stencil::kCenter));
+  for (int r = 0; r < S::kWidth * S::kWidth; ++r) rows[r] = zero_row<T>();
+  const Row<T> z_positions = node_positions(T(S::kCenter));
   std::int32_t node = -1;
   std::size_t runs = 0;
-  for (std::size_t first = 0; first < in.particles.count; first += Pack<T>::size()) {
-    const std::size_t left = in.particles.count - first;
-    const std::size_t lanes = left < Pack<T>::size() ? left : Pack<T>::size();
-    stage<Stencil, Transfer>(in, first, lanes, staged);
+  for (const auto [first, lanes] : packs<T>(in.particles.count)) {
+    stage<Stencil, affine, force>(in, first, lanes, staged);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (staged.stencil.node[lane] != node) {
-        if (node >= 0) flush<kWidth>(node, rows, arena, touched);
+        if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
         node = staged.stencil.node[lane];
         ++runs;
       }
-      add_particle<Stencil>(staged, lane, z_positions, rows);
+      add_particle<S>(staged, lane, z_positions, rows);
     }
   }
-  if (node >= 0) flush<kWidth>(node, rows, arena, touched);
+  if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
   return runs;
 }
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
   for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
-    table.transfer[s][t].scatter = scatter<Stencil, Transfer, T>;
+    table.transfer[s][t].scatter = scatter<Stencil, Transfer::kAffine, force_of<Stencil, Transfer>(), T>;
   });
 }
 
