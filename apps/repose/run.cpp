@@ -58,7 +58,7 @@ class Run {
         frames_(frames),
         folder_(std::move(folder)),
         simulation_(std::move(simulation)),
-        log_(scene_, *simulation_) {}
+        log_(scene_, arguments.scene.quality, *simulation_) {}
 
   int go();
 

@@ -62,12 +62,13 @@ std::string one_line(const Json::Value& json) {
   return Json::writeString(builder, json);
 }
 
-RunLog::RunLog(const Scene& scene, const Simulation& simulation) {
+RunLog::RunLog(const Scene& scene, const std::string& quality, const Simulation& simulation) {
   log_["repose"] = REPOSE_VERSION;
   log_["compiler"] = __VERSION__;
   log_["target"] = target_name(simulation.target());
   log_["threads"] = simulation.threads();
   log_["scene"]["name"] = scene.name;
+  log_["scene"]["quality"] = quality;
   log_["scene"]["hash"] = scene_hash(scene);
   log_["scene"]["folder"] =
       std::filesystem::absolute(scene.folder.empty() ? "." : scene.folder).lexically_normal().string();

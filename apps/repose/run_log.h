@@ -14,7 +14,7 @@ namespace repose {
 
 class RunLog {
  public:
-  RunLog(const Scene& scene, const Simulation& simulation);
+  RunLog(const Scene& scene, const std::string& quality, const Simulation& simulation);
 
   /// Takes over the frames up to `last` of the log of an earlier part of the run, if there is one at `path`.
   void continue_from(const std::string& path, std::int64_t last);

@@ -1,5 +1,5 @@
-// Repose: from a scene file to a Scene: text, tree, overrides, parameters, then the keys. Complaints of all
-// these are gathered; only a file that is not JSON at all ends it early.
+// Repose: from a scene file to a Scene: text, tree, quality, overrides, parameters, then the keys. Complaints
+// of all these are gathered; only a file that is not JSON at all ends it early.
 #include "engine/scene/reader.h"
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include "engine/scene/json_text.h"
 #include "engine/scene/overrides.h"
 #include "engine/scene/parameters.h"
+#include "engine/scene/quality.h"
 #include "engine/scene/wording.h"
 
 namespace repose {
@@ -75,6 +76,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   }
 
   Expressions expressions;
+  apply_quality(options.quality, root, source);
   apply_overrides(options.overrides, root, source, complaints);
   evaluate_parameters(root, expressions, complaints);
   Scene scene;

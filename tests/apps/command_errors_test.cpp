@@ -110,6 +110,8 @@ TEST_F(CommandErrors, UnknownWords_AreUsage) {
   EXPECT_THAT(refusal(64, {"run", scene, "--bogus"}), HasSubstr("--bogus"));
   EXPECT_THAT(refusal(64, {"run"}), HasSubstr("scene"));
   EXPECT_THAT(refusal(64, {"run", scene, "--target", "sse2"}), HasSubstr("'sse2' is not one of avx512, avx2"));
+  EXPECT_THAT(refusal(64, {"run", scene, "--quality", "best"}),
+              HasSubstr("'best' is not one of draft, standard"));
   EXPECT_THAT(refusal(64, {"run", scene, "--threads", "0"}), HasSubstr("--threads"));
   EXPECT_THAT(refusal(64, {"bench", scene, "--steps", "0"}), HasSubstr("--steps"));
 }

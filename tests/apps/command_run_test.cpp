@@ -107,6 +107,30 @@ TEST_F(CommandRun, FramesFromTo_WritesOnlyThose) {
   EXPECT_FALSE(std::filesystem::exists(path("out/tiny.points.0005.vdb")));
 }
 
+TEST_F(CommandRun, Quality_IsWhatItsHelpSays) {
+  const auto scene_of = [&](const std::string& quality) {
+    std::vector<std::string> words{"run", tiny_scene(), "--out", path(quality), "--frames", "1", "--quiet"};
+    if (quality != "unsaid") words.insert(words.end(), {"--quality", quality});
+    EXPECT_EQ(repose(words).code, 0) << quality;
+    return read_json(path(quality + "/scene.json"));
+  };
+  const Json::Value unsaid = scene_of("unsaid"), standard = scene_of("standard"), draft = scene_of("draft"),
+                    reference = scene_of("reference");
+  EXPECT_EQ(standard, unsaid);
+  EXPECT_DOUBLE_EQ(draft["grid"]["spacing"].asDouble(), 2.0 * unsaid["grid"]["spacing"].asDouble());
+  EXPECT_DOUBLE_EQ(reference["time"]["sound"].asDouble(), 0.25);
+  const auto row = [&](const std::string& quality) {
+    return read_json(path(quality + "/run.json"))["frames"][0];
+  };
+  EXPECT_EQ(row("draft")["particles"], 125);
+  EXPECT_EQ(row("reference")["particles"], 1000);
+  EXPECT_EQ(row("standard")["hash"], row("unsaid")["hash"]);
+  EXPECT_NEAR(row("reference")["steps"].asDouble(), 2.0 * row("unsaid")["steps"].asDouble(), 1.0);
+  EXPECT_EQ(read_json(path("draft/run.json"))["scene"]["quality"], "draft");
+  EXPECT_EQ(read_json(path("unsaid/run.json"))["scene"]["quality"], "standard");
+  EXPECT_THAT(repose({"run", "--help"}).out, HasSubstr("draft: grid.spacing x 2"));
+}
+
 TEST_F(CommandRun, Json_IsOneLinePerFrame) {
   const Finished run = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--json"});
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 3);
