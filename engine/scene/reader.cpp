@@ -61,6 +61,22 @@ void check_mesh_paths(const Json::Value& root, Complaints& complaints) {
   }
 }
 
+/// Notes where the values of objects stand, for errors that only the compiler can find.
+void find_places(const Json::Value& value, const std::string& path, const SourceText& source,
+                 std::map<std::string, std::string>& places) {
+  if (!path.empty()) places[path] = source.place(value.getOffsetStart());
+  const std::string start = path.empty() ? "" : path + ".";
+  if (value.isObject()) {
+    for (const std::string& name : value.getMemberNames())
+      find_places(value[name], start + name, source, places);
+  } else if (value.isArray()) {
+    for (const Json::Value& element : value) {
+      const bool named = element.isObject() && element["name"].isString();
+      if (named) find_places(element, start + element["name"].asString(), source, places);
+    }
+  }
+}
+
 }  // namespace
 
 Result<Scene> read_scene_text(const std::string& text, const std::string& name, const std::string& folder,
@@ -87,6 +103,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   if (!options.allow_outside_paths) check_mesh_paths(root, complaints);
   if (!complaints.empty()) return complaints.error(source);
 
+  find_places(root, "", source, scene.places);
   scene.folder = folder;
   scene.canonical = compact_json(root);
   return scene;

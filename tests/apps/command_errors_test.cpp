@@ -62,7 +62,8 @@ TEST_F(CommandErrors, MeshOutsideTheFolder_IsRefusedUnlessAllowed) {
 }
 
 TEST_F(CommandErrors, NoParticle_NamesTheBody) {
-  EXPECT_THAT(refused_override(65, "grid.spacing=10"), HasSubstr("bodies.box: the shape holds no particle"));
+  EXPECT_THAT(refused_override(65, "grid.spacing=10"),
+              HasSubstr("tiny.json:4:14: bodies.box: the shape holds no particle"));
 }
 
 TEST_F(CommandErrors, NoScene_NoInput) {
@@ -72,8 +73,20 @@ TEST_F(CommandErrors, NoScene_NoInput) {
 
 TEST_F(CommandErrors, MoreMemoryThanThereIs_NamesASpacingThatFits) {
   const std::string message = refused_override(78, "grid.spacing=1e-6");
-  EXPECT_THAT(message, HasSubstr("grid.spacing"));
+  EXPECT_THAT(message, HasSubstr("--set grid.spacing=1e-6: grid.spacing: needs about "));
   EXPECT_THAT(message, EndsWith(" m or more fits\n"));
+}
+
+TEST_F(CommandErrors, MoreMemoryThanThereIs_NamesThePlaceInTheFile) {
+  std::string text = R"({"repose": 1, "name": "fine",
+  "grid": {"spacing": 1e-6},
+  "materials": {"sand": {"type": "drucker_prager"}},
+  "bodies": [{"name": "box", "material": "sand", "shape": {"type": "box", "lower": [0, 0, 0],
+    "upper": [1, 1, 1]}}]})";
+  const std::string scene = write("fine.json", text);
+  const std::string message = refusal(78, {"check", scene});
+  EXPECT_THAT(message, HasSubstr(scene + ":2:23: grid.spacing: needs about "));
+  EXPECT_THAT(message, HasSubstr(" TB for 8e+18 particles, and "));
 }
 
 TEST_F(CommandErrors, FolderThatCannotBe_NamesIt) {
