@@ -72,6 +72,7 @@ class Run {
   int interrupted();
   int stop(Error error);
   void tell(const FrameReport& frame, const Json::Value& row) const;
+  void tell_warnings(Progress& progress);
 
   const RunArguments& arguments_;
   Scene scene_;
@@ -79,6 +80,7 @@ class Run {
   OutputFolder folder_;
   std::unique_ptr<Simulation> simulation_;
   RunLog log_;
+  std::size_t warnings_told_ = 0;
   std::vector<std::string> vtp_;
   std::vector<double> vtp_times_;
 };
@@ -116,6 +118,7 @@ Result<FrameReport> Run::advance(Progress& progress) {
   std::int64_t steps = 0;
   return simulation_->advance_frame([&](const StepReport& step, const Counters& counters) {
     ++steps;
+    tell_warnings(progress);
     if (progress.visible()) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const double ns =
@@ -175,6 +178,17 @@ void Run::tell(const FrameReport& frame, const Json::Value& row) const {
                 static_cast<long long>(frames_.last), frame.time, static_cast<long long>(frame.steps),
                 frame.seconds);
     std::fflush(stdout);
+  }
+}
+
+/// As soon as they are known: a run that slows down for ever would not reach the end of its frame.
+void Run::tell_warnings(Progress& progress) {
+  for (; warnings_told_ < simulation_->warnings().size(); ++warnings_told_) {
+    const std::string& warning = simulation_->warnings()[warnings_told_];
+    log_.warn(warning);
+    if (arguments_.quiet) continue;
+    progress.leave();
+    std::fprintf(stderr, "repose: warning: %s\n", warning.c_str());
   }
 }
 
@@ -238,6 +252,7 @@ int Run::go() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);
+  tell_warnings(progress);
   while (simulation_->counters().frame < frames_.last) {
     const std::int64_t before = simulation_->counters().frame;
     auto frame = advance(progress);

@@ -3,6 +3,7 @@
 #include <json/reader.h>
 #include <json/writer.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -81,6 +82,7 @@ RunLog::RunLog(const Scene& scene, const std::string& quality, const Simulation&
     json["why"] = effect.reason;
     json["bytes_per_particle"] = Json::UInt64(effect.bytes_per_particle);
   }
+  log_["warnings"] = Json::Value(Json::arrayValue);
   log_["frames"] = Json::Value(Json::arrayValue);
   log_["end"] = "running";
 }
@@ -92,6 +94,13 @@ void RunLog::continue_from(const std::string& path, std::int64_t last) {
   for (const Json::Value& frame : old["frames"]) {
     if (frame["frame"].asInt64() <= last) log_["frames"].append(frame);
   }
+  for (const Json::Value& warning : old["warnings"]) warn(warning.asString());
+}
+
+void RunLog::warn(const std::string& warning) {
+  Json::Value& warnings = log_["warnings"];
+  if (std::find(warnings.begin(), warnings.end(), Json::Value(warning)) == warnings.end())
+    warnings.append(warning);
 }
 
 const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation) {

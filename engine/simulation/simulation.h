@@ -70,6 +70,9 @@ class Simulation {
   virtual Target target() const = 0;
   virtual int threads() const = 0;
   virtual const std::vector<Solid>& solids() const = 0;
+  /// What the scene most likely does not mean, though it is no error. Of the scene and where its bodies start
+  /// when it is made; steps may add to it, each kind once.
+  virtual const std::vector<std::string>& warnings() const = 0;
 
   /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74.
   virtual Result<void> save(const std::string& path) const = 0;

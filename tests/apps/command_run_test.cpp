@@ -131,6 +131,52 @@ TEST_F(CommandRun, Quality_IsWhatItsHelpSays) {
   EXPECT_THAT(repose({"run", "--help"}).out, HasSubstr("draft: grid.spacing x 2"));
 }
 
+TEST_F(CommandRun, Warnings_AreThoseOfCheckAndInTheLog) {
+  const std::vector<std::string> odd{"--set", "materials.sand.friction_angle=43", "--set",
+                                     "bodies.box.shape.lower=[0,-0.08,0]"};
+  const auto command = [&](std::vector<std::string> words) {
+    words.insert(words.end(), odd.begin(), odd.end());
+    return repose(words);
+  };
+  const Finished check = command({"check", tiny_scene()});
+  const Finished run = command({"run", tiny_scene(), "--out", path("out"), "--frames", "1"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json::Value warnings = read_json(path("out/run.json"))["warnings"];
+  ASSERT_EQ(warnings.size(), 2u);
+  for (const Json::Value& warning : warnings) {
+    EXPECT_THAT(run.err, HasSubstr("repose: warning: " + warning.asString() + "\n"));
+    EXPECT_THAT(check.out, HasSubstr("warning: " + warning.asString() + "\n"));
+  }
+  EXPECT_THAT(warnings[0].asString(), HasSubstr("materials.sand: with friction_angle 43"));
+  EXPECT_THAT(warnings[1].asString(), HasSubstr("bodies.box: "));
+  const Finished quiet = command({"run", tiny_scene(), "--out", path("out"), "--frames", "1", "--quiet"});
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_EQ(read_json(path("out/run.json"))["warnings"].size(), 2u) << "unsaid, but kept";
+  const Finished more = command({"run", tiny_scene(), "--out", path("out"), "--frames", "2", "--resume"});
+  EXPECT_EQ(more.code, 0);
+  EXPECT_EQ(read_json(path("out/run.json"))["warnings"].size(), 2u) << "a resumed run does not keep them twice";
+}
+
+TEST_F(CommandRun, SandThatFallsForEver_IsToldOnce) {
+  // With 1000 m/s^2 it passes four times the speed at which a particle and a wave cross cells alike in 0.1 s.
+  const std::vector<std::string> words{
+      "run", tiny_scene(R"(, "gravity": {"acceleration": [0, -1000, 0]})"), "--out", path("out"), "--frames",
+      "20"};
+  std::vector<std::string> floorless = words;
+  floorless.insert(floorless.end(), {"--set", "colliders=[]"});
+  const Finished falling = repose(floorless);
+  ASSERT_EQ(falling.code, 0) << falling.err;
+  EXPECT_EQ(std::count(falling.err.begin(), falling.err.end(), '\n'), 1) << falling.err;
+  EXPECT_THAT(falling.err,
+              ::testing::ContainsRegex(
+                  "^repose: warning: particle [0-9]+ of 'box' at \\(.*, -.*, .*\\) m moves at [0-9.]+ "
+                  "m/s, which cuts steps to .* s where .* allow .* s; is there a floor under it\\?"));
+  const Json::Value log = read_json(path("out/run.json"));
+  ASSERT_EQ(log["warnings"].size(), 1u);
+  EXPECT_GT(log["frames"][19]["steps"].asInt(), 4 * log["frames"][0]["steps"].asInt());
+  EXPECT_THAT(repose(words).err, ::testing::Not(HasSubstr("warning"))) << "with a floor all is well";
+}
+
 TEST_F(CommandRun, Json_IsOneLinePerFrame) {
   const Finished run = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--json"});
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 3);

@@ -87,6 +87,21 @@ TEST_F(Command, CheckOfAnAngleThatCannotYield_Warns) {
   EXPECT_THAT(flat.out, Not(HasSubstr("warning")));
 }
 
+TEST_F(Command, CheckOfABodyInsideASolid_WarnsOfEachBody) {
+  // The box reaches four cells into the plane.
+  const Finished sunk = repose({"check", tiny_scene(), "--set", "bodies.box.shape.lower=[0,-0.08,0]"});
+  EXPECT_EQ(sunk.code, 0);
+  EXPECT_THAT(sunk.out,
+              ::testing::ContainsRegex("warning: bodies.box: [0-9]+ of 2000 particles start inside solids, "
+                                       "the deepest 4 cells \\(0.08 m\\) inside "
+                                       "colliders.ground"));
+  const std::size_t at = sunk.out.find("bodies.box: ") + 12;
+  EXPECT_NEAR(std::atof(sunk.out.c_str() + at), 700.0, 20.0)
+      << "7 of 20 half cells are deeper than half a cell";
+  const Finished touching = repose({"check", tiny_scene(), "--set", "bodies.box.shape.lower=[0,-0.009,0]"});
+  EXPECT_THAT(touching.out, Not(HasSubstr("warning"))) << "less than half a cell is a matter of sampling";
+}
+
 TEST_F(Command, CheckOfEveryScene_Good) {
   for (const auto& entry : std::filesystem::directory_iterator(REPOSE_SCENES)) {
     if (entry.path().extension() != ".json") continue;
