@@ -105,6 +105,19 @@ TEST_F(CommandErrors, FolderInUse_NamesIt) {
   EXPECT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "1"}).code, 0);
 }
 
+TEST_F(CommandErrors, RunThatCannotStart_LeavesNothing) {
+  const std::string scene = tiny_scene();
+  refusal(65, {"run", scene, "--out", path("new/out"), "--set", "grid.spacing=10"});
+  EXPECT_FALSE(std::filesystem::exists(path("new"))) << "the folders that it made";
+  std::filesystem::create_directories(path("old"));
+  refusal(65, {"run", scene, "--out", path("old"), "--set", "grid.spacing=10"});
+  EXPECT_TRUE(std::filesystem::is_empty(path("old")));
+  refusal(66, {"run", scene, "--out", path("old"), "--resume"});
+  EXPECT_TRUE(std::filesystem::is_empty(path("old")));
+  ASSERT_EQ(repose({"run", scene, "--out", path("old"), "--frames", "1"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("old/.lock"))) << "nor does one that ends";
+}
+
 TEST_F(CommandErrors, ResumeOfNothing_NoInput) {
   EXPECT_THAT(refusal(66, {"run", tiny_scene(), "--out", path("out"), "--resume"}), HasSubstr("no checkpoint"));
 }
