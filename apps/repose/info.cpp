@@ -22,12 +22,17 @@ void print_points(const std::string& path, const PointCloud& points) {
     const auto& v = points.velocity[p];
     fastest = std::max(fastest, std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]));
   }
-  std::printf("%s: %zu points, spacing %g m\n", path.c_str(), points.size(), points.spacing);
+  std::printf("%s: %zu points", path.c_str(), points.size());
+  if (points.spacing > 0.0) std::printf(", spacing %g m", points.spacing);
+  std::printf("\n");
   if (points.size() == 0) return;
   std::printf("  bounds  (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m\n", lower[0], lower[1], lower[2], upper[0],
               upper[1], upper[2]);
   std::printf("  fastest %.4g m/s\n  attributes P v id pscale", fastest);
-  for (const PointAttribute& attribute : points.attributes) std::printf(" %s", attribute.name.c_str());
+  for (const PointAttribute& attribute : points.attributes) {
+    const auto [least, most] = std::minmax_element(attribute.values.begin(), attribute.values.end());
+    std::printf(" %s (%.4g to %.4g)", attribute.name.c_str(), *least, *most);
+  }
   std::printf("\n");
 }
 
@@ -84,10 +89,14 @@ int print_file(const std::string& path) {
   if (std::filesystem::is_directory(path)) return print_run(path);
   const std::string extension = std::filesystem::path(path).extension();
   if (extension == ".checkpoint") return print_checkpoint(path);
-  if (extension != ".vdb" && extension != ".ply") {
-    return fail({ErrorKind::kUsage, "is not a .vdb, .ply or .checkpoint file, nor the folder of a run", path});
+  if (extension != ".vdb" && extension != ".ply" && extension != ".vtp") {
+    return fail({ErrorKind::kUsage,
+                 "is not what info can read: a .vdb, .ply, .vtp or .checkpoint file, or the folder of a run",
+                 path});
   }
-  auto points = extension == ".vdb" ? read_vdb_points(path) : read_ply(path);
+  auto points = extension == ".vdb"   ? read_vdb_points(path)
+                : extension == ".ply" ? read_ply(path)
+                                      : read_vtp(path);
   if (!points) return fail(points.error());
   print_points(path, *points);
   return 0;

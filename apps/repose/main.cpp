@@ -94,7 +94,7 @@ int main(int count, char** words) {
 
   std::vector<std::string> files;
   CLI::App& info_app = *app.add_subcommand("info", "what a cache, a checkpoint or a run's folder holds");
-  info_app.add_option("files", files, ".vdb, .ply, .checkpoint, or the folder of a run")->required();
+  info_app.add_option("files", files, ".vdb, .ply, .vtp, .checkpoint, or the folder of a run")->required();
   info_app.callback([&] { code = info_command(files); });
 
   MovieArguments movie;

@@ -153,7 +153,8 @@ TEST_F(CommandErrors, FramesThatAreNoRange_AreUsage) {
 TEST_F(CommandErrors, InfoOfNothing_NoInput) {
   EXPECT_THAT(refusal(66, {"info", path("none")}), HasSubstr("none"));
   EXPECT_THAT(refusal(66, {"info", folder_.string()}), HasSubstr("is this the folder of a run?"));
-  EXPECT_THAT(refusal(64, {"info", tiny_scene()}), HasSubstr("is not a .vdb, .ply or .checkpoint file"));
+  EXPECT_THAT(refusal(64, {"info", tiny_scene()}),
+              HasSubstr("a .vdb, .ply, .vtp or .checkpoint file, or the folder of a run"));
 }
 
 TEST_F(CommandErrors, MovieOfNothing_NoInput) {

@@ -126,6 +126,23 @@ TEST_F(Command, Info_TellsOfRunPointsAndCheckpoint) {
   EXPECT_THAT(info.out, HasSubstr("checkpoint after frame 2"));
 }
 
+TEST_F(Command, InfoOfPoints_IsTheSameForEveryFormat) {
+  const std::string out = path("out");
+  ASSERT_EQ(
+      repose({"run", tiny_scene(R"(, "output": {"ply": true, "vtp": true})"), "--out", out, "--frames", "1"})
+          .code,
+      0);
+  const auto lines = [&](const std::string& ending) {
+    const Finished info = repose({"info", out + "/tiny.points.0001." + ending});
+    EXPECT_EQ(info.code, 0) << info.err;
+    EXPECT_THAT(info.out, HasSubstr(": 1000 points"));
+    return info.out.substr(info.out.find("  fastest"));
+  };
+  EXPECT_THAT(lines("vtp"), HasSubstr("attributes P v id pscale"));
+  EXPECT_EQ(lines("vtp"), lines("ply"));
+  EXPECT_EQ(lines("vtp"), lines("vdb"));
+}
+
 TEST_F(Command, InfoOfARunIntoASolid_TellsTheDeepest) {
   // The box starts with its lower half inside the ground.
   const std::string out = path("out");
