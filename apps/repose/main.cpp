@@ -62,7 +62,9 @@ int main(int count, char** words) {
   add_scene_options(run_app, run.scene);
   run_app.add_option("--out", run.out, "folder (default: out/NAME)");
   run_app.add_option("--frames", run.frames, "A-B: write frames A to B; B: all up to B");
-  run_app.add_flag("--resume", run.resume, "go on after the newest checkpoint in the folder");
+  run_app.add_flag(
+      "--resume", run.resume,
+      "go on after the newest checkpoint in the folder; frames, output and camera may have changed");
   run_app.add_flag("--json", run.json, "one line of JSON per frame on standard output");
   run_app.add_flag("--quiet", run.quiet, "say nothing but errors");
   run_app.callback([&] {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "apps/repose/command.h"
 #include "apps/repose/output_folder.h"
@@ -12,6 +13,7 @@
 #include "apps/repose/run_log.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/point_cloud.h"
+#include "engine/scene/identity.h"
 
 namespace repose {
 namespace {
@@ -64,6 +66,7 @@ class Run {
 
  private:
   Result<void> resume();
+  Error other_scene(Error error) const;
   void list_series();
   Result<FrameReport> advance(Progress& progress);
   Result<void> write_frame(const FrameReport& frame);
@@ -96,10 +99,22 @@ Result<void> Run::resume() {
         std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
       return {};
     }
+    if (loaded.error().kind == ErrorKind::kBadScene) return other_scene(loaded.error());
     if (loaded.error().kind != ErrorKind::kIo) return loaded;
     std::fprintf(stderr, "repose: warning: %s\n", loaded.error().text().c_str());
   }
   return Error{ErrorKind::kNoInput, "holds no checkpoint to resume from; run without --resume", folder_.path()};
+}
+
+/// Says by which key the scene differs from the one that lies in the folder.
+Error Run::other_scene(Error error) const {
+  std::ifstream file(folder_.scene(), std::ios::binary);
+  const std::string before{std::istreambuf_iterator<char>(file), {}};
+  const std::string difference = first_difference(before, scene_.canonical);
+  if (difference.empty()) return error;
+  error.message =
+      "belongs to another scene: " + difference + "; give it back its value, or run without --resume";
+  return error;
 }
 
 /// The series names the frames of the whole run, so also those from before it was resumed.

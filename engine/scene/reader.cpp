@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "engine/scene/complaints.h"
+#include "engine/scene/identity.h"
 #include "engine/scene/json_fields.h"
 #include "engine/scene/json_text.h"
 #include "engine/scene/overrides.h"
@@ -105,6 +106,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
 
   find_places(root, "", source, scene.places);
   scene.folder = folder;
+  scene.identity = identity_text(root);
   scene.canonical = compact_json(root);
   return scene;
 }

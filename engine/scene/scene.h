@@ -120,8 +120,8 @@ struct Scene {
 
   std::map<std::string, std::string> places;  ///< where each key of the file stands, "file:line:col"
   std::string folder;                         ///< where relative paths start
-  std::string canonical;  ///< the scene as compact JSON after overrides and expressions; what is hashed and
-                          ///< kept beside a run
+  std::string identity;   ///< what a state of it depends on (engine/scene/identity.h); what is hashed
+  std::string canonical;  ///< all of it as compact JSON after overrides and expressions; kept beside a run
 };
 
 void describe(Fields& fields, Scene& scene);

@@ -243,7 +243,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Scene& scene, const
 
 std::string scene_hash(const Scene& scene) {
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(scene.canonical)));
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(scene.identity)));
   return text;
 }
 

@@ -79,7 +79,7 @@ class Simulation {
   virtual Result<void> load(const std::string& path) = 0;
 };
 
-/// The hash of a scene's canonical text, 16 hexadecimal digits.
+/// The hash of a scene's identity, 16 hexadecimal digits: equal where a state of one goes on in the other.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace repose

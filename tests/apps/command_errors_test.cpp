@@ -124,9 +124,15 @@ TEST_F(CommandErrors, ResumeOfNothing_NoInput) {
 
 TEST_F(CommandErrors, ResumeOfAnotherScene_NamesBoth) {
   ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--frames", "1"}).code, 0);
-  EXPECT_THAT(
-      refusal(65, {"run", tiny_scene(), "--out", path("out"), "--resume", "--set", "bodies.box.seed=7"}),
-      HasSubstr("belongs to another scene"));
+  const auto refused = [&](const std::string& override) {
+    return refusal(65, {"run", tiny_scene(), "--out", path("out"), "--resume", "--set", override});
+  };
+  EXPECT_THAT(refused("bodies.box.shape.upper=[0.1,0.12,0.2]"),
+              HasSubstr("belongs to another scene: bodies.box.shape.upper[2] was 0.1 and is 0.2 now; "));
+  EXPECT_THAT(refused("bodies.box.seed=7"), HasSubstr("bodies.box.seed was not there and is 7 now; "));
+  EXPECT_THAT(refused("grid.precision=double"),
+              HasSubstr("grid.precision was not there and is \"double\" now; "));
+  EXPECT_THAT(refused("colliders=[]"), HasSubstr("colliders was [{"));
 }
 
 TEST_F(CommandErrors, UnknownWords_AreUsage) {

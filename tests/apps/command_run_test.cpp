@@ -209,6 +209,17 @@ TEST_F(CommandRun, SceneBesideTheRun_RunsToTheSameHash) {
   EXPECT_EQ(read_json(path("a/run.json"))["scene"]["hash"], read_json(path("b/run.json"))["scene"]["hash"]);
 }
 
+TEST_F(CommandRun, ResumedWithMoreFramesAndOtherOutput_GoesOn) {
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("whole"), "--frames", "4", "--quiet"}).code, 0);
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--set", "time.frames=2", "--quiet"}).code, 0);
+  const Finished more = repose({"run", tiny_scene(R"(, "camera": {"eye": [2, 2, 2]})"), "--out", path("out"),
+                                "--set", "time.frames=4", "--set", "output.ply=true", "--resume", "--quiet"});
+  ASSERT_EQ(more.code, 0) << more.err;
+  EXPECT_EQ(read_json(path("out/run.json"))["frames"].size(), 4u);
+  EXPECT_EQ(hash_of_last_frame(path("out")), hash_of_last_frame(path("whole")));
+  EXPECT_EQ(files_with(path("out"), ".ply"), 2u);
+}
+
 TEST_F(CommandRun, OlderRunInTheFolder_IsNotResumed) {
   // A shorter run over a longer one: the checkpoints of the longer one must not outlive it.
   const std::string scene = tiny_scene();

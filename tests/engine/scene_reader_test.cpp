@@ -8,6 +8,8 @@
 #include <locale>
 #include <numbers>
 
+#include "engine/scene/identity.h"
+
 namespace repose {
 namespace {
 
@@ -253,6 +255,28 @@ TEST(SceneReader, QualityOfAWrongScene_LeavesTheComplaintToTheReader) {
   const Result<Scene> time =
       read_scene_text(kSmall, "s.json", ".", {.overrides = {"time.cfl=7"}, .quality = Quality::kReference});
   EXPECT_EQ(time.error().where, "--set time.cfl=7: time.cfl");
+}
+
+TEST(SceneReader, Identity_IsAllThatAStateDependsOn) {
+  const std::string plain = read(kSmall).identity;
+  EXPECT_EQ(read(kSmall, {"time.frames=7", "output.vtp=true", "camera.eye=[1,2,3]"}).identity, plain);
+  EXPECT_EQ(read(kSmall, {"time={}"}).identity, plain);
+  for (const char* other : {"time.cfl=0.3", "bodies.heap.seed=2", "name=other", "gravity.ramp=1"}) {
+    EXPECT_NE(read(kSmall, {other}).identity, plain) << other;
+  }
+}
+
+TEST(SceneReader, FirstDifference_NamesTheKeyAndBothValues) {
+  const auto difference = [](const std::string& before, const std::string& now) {
+    return first_difference(read(kWhole, {before}).canonical, read(kWhole, {now}).canonical);
+  };
+  EXPECT_EQ(difference("bodies.heap.seed=5", "bodies.heap.seed=6"), "bodies.heap.seed was 5 and is 6 now");
+  EXPECT_EQ(difference("time.cfl=0.1", "time.cfl=0.30000000000000004"),
+            "time.cfl was 0.1 and is 0.30000000000000004 now");
+  EXPECT_EQ(difference("parameters.a=0.25", "parameters.a=0.5"), "parameters.a was 0.25 and is 0.5 now")
+      << "not the radius that follows from it";
+  EXPECT_EQ(difference("time.frames=7", "time.frames=8"), "");
+  EXPECT_EQ(first_difference("{", kWhole), "");
 }
 
 }  // namespace
