@@ -41,11 +41,12 @@ int print_run(const std::string& folder) {
   if (!log) return fail(log.error());
   const Json::Value& frames = (*log)["frames"];
   double deepest = 0.0, seconds = 0.0;
-  std::int64_t steps = 0, at = 0;
+  std::int64_t steps = 0, at = 0, resumed = 0;
   std::string solid;
   for (const Json::Value& frame : frames) {
     seconds += frame["seconds"]["wall"].asDouble();
     steps += frame["steps"].asInt64();
+    resumed += frame["resumed"].asBool() ? 1 : 0;
     const double cells = frame["deepest"]["cells"].asDouble();
     if (cells <= deepest) continue;
     deepest = cells;
@@ -57,6 +58,10 @@ int print_run(const std::string& folder) {
               (*log)["threads"].asInt(), (*log)["end"].asCString());
   std::printf("  frames  %u, %lld steps, %.1f s of computing\n", frames.size(), static_cast<long long>(steps),
               seconds);
+  if (resumed > 0) {
+    std::printf("  resumed within %lld of them: what these took before that is not counted\n",
+                static_cast<long long>(resumed));
+  }
   if (!frames.empty()) {
     const Json::Value& last = frames[frames.size() - 1];
     std::printf("  last    t %.4f s, %llu particles, %.6g kg, hash %s\n", last["time"].asDouble(),

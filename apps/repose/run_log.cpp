@@ -107,6 +107,7 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   Json::Value row;
   row["frame"] = Json::Int64(frame.frame);
   row["time"] = frame.time;
+  if (frame.resumed) row["resumed"] = true;  // steps, dt, limits and seconds are those since then
   row["steps"] = Json::Int64(frame.steps);
   row["dt"]["least"] = frame.least_dt;
   row["dt"]["largest"] = frame.largest_dt;

@@ -112,6 +112,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   const double fps = scene_.time.frames_per_second;
   Counters& counters = state_.counters;
   FrameReport frame;
+  frame.resumed = counters.time_in_frame > 0.0;
   frame.least_dt = std::numeric_limits<double>::infinity();
   const Profile before = stepper_.profile();
   const auto start = std::chrono::steady_clock::now();

@@ -30,6 +30,7 @@ struct SimulationOptions {
 struct FrameReport {
   std::int64_t frame = 0;  ///< the frame that is now complete
   double time = 0.0;       ///< s
+  bool resumed = false;    ///< it was begun before: what it took until then is in none of the figures below
   std::int64_t steps = 0;
   double least_dt = 0.0, largest_dt = 0.0;  ///< s
   std::array<std::int64_t, 6> limits{};     ///< steps bound by each Limit
