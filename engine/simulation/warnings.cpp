@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "engine/simulation/diagnostics.h"
 #include "engine/step/time_step.h"
 
 namespace repose {
@@ -37,6 +38,11 @@ Inside inside_block(const std::vector<Solid>& solids, const State<Real>& state, 
                     std::size_t owner) {
   Inside inside;
   const Index3 block = block_of(state, owner);
+  const Vec3 middle = state.world(block, {2.0, 2.0, 2.0});
+  const bool near = std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
+    return solid.distance(middle) < block_radius(state.spacing);
+  });
+  if (!near) return inside;
   const double tolerated = kToleratedCells * state.spacing;
   for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
     const Vec3 x = position_of(state, set, block, p);
