@@ -92,6 +92,9 @@ int print_checkpoint(const std::string& path) {
 int print_file(const std::string& path) {
   if (!std::filesystem::exists(path)) return fail({ErrorKind::kNoInput, "no such file or folder", path});
   if (std::filesystem::is_directory(path)) return print_run(path);
+  const std::filesystem::path file(path);
+  if (file.filename() == "run.json")
+    return print_run(file.has_parent_path() ? file.parent_path().string() : ".");
   const std::string extension = std::filesystem::path(path).extension();
   if (extension == ".checkpoint") return print_checkpoint(path);
   if (extension != ".vdb" && extension != ".ply" && extension != ".vtp") {
@@ -110,10 +113,12 @@ int print_file(const std::string& path) {
 }  // namespace
 
 int info_command(const std::vector<std::string>& files) {
+  int first = 0;  // all that can be read are told, whatever is beside them: `info FOLDER/*`
   for (const std::string& file : files) {
-    if (const int code = print_file(file); code != 0) return code;
+    const int code = print_file(file);
+    if (first == 0) first = code;
   }
-  return 0;
+  return first;
 }
 
 }  // namespace repose

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "apps/repose/command.h"
+#include "engine/scene/wording.h"
 
 namespace repose {
 namespace {
@@ -26,12 +27,23 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
       ->envname("REPOSE_TARGET");
 }
 
+/// " (did you mean run?)", where a command is called much like `word`.
+std::string meant(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  const std::string name = nearest(word, names);
+  return alike(word, name) ? " (did you mean " + name + "?)" : "";
+}
+
 /// One message for whatever is wrong with the words, in the form of all others.
 std::string word_failure(const CLI::App* app, const CLI::Error& error) {
   const std::vector<std::string> unknown = app->remaining();
   const bool no_command = app->get_subcommands().empty();
   std::string text = no_command ? "name a command" : error.what();
-  if (no_command && !unknown.empty()) text = "'" + unknown.front() + "' is no command";
+  if (no_command && !unknown.empty())
+    text = "'" + unknown.front() + "' is no command" + meant(*app, unknown.front());
   std::replace(text.begin(), text.end(), '\n', ' ');
   return "repose: error: " + text + "; see repose " +
          (no_command ? "" : app->get_subcommands().front()->get_name() + " ") + "--help\n";

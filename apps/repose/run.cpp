@@ -96,7 +96,8 @@ Result<void> Run::resume() {
       log_.continue_from(folder_.log(), simulation_->counters().frame);
       list_series();
       if (!arguments_.json && !arguments_.quiet)
-        std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
+        std::fprintf(stderr, "repose: resuming after frame %lld%s\n", static_cast<long long>(frame),
+                     frame < frames_.last ? "" : ", so there is nothing left to do; --frames N goes further");
       return {};
     }
     if (loaded.error().kind == ErrorKind::kBadScene) return other_scene(loaded.error());

@@ -138,7 +138,9 @@ TEST_F(CommandErrors, ResumeOfAnotherScene_NamesBoth) {
 TEST_F(CommandErrors, UnknownWords_AreUsage) {
   const std::string scene = tiny_scene();
   EXPECT_THAT(refusal(64, {}), HasSubstr("name a command"));
-  EXPECT_THAT(refusal(64, {"sculpt"}), HasSubstr("'sculpt' is no command"));
+  EXPECT_THAT(refusal(64, {"sculpt"}), HasSubstr("'sculpt' is no command; see repose --help"));
+  EXPECT_THAT(refusal(64, {"chekc"}),
+              HasSubstr("'chekc' is no command (did you mean check?); see repose --help"));
   EXPECT_THAT(refusal(64, {"run", scene, "--bogus"}), HasSubstr("--bogus"));
   EXPECT_THAT(refusal(64, {"run"}), HasSubstr("scene"));
   EXPECT_THAT(refusal(64, {"run", scene, "--target", "sse2"}), HasSubstr("'sse2' is not one of avx512, avx2"));

@@ -218,6 +218,9 @@ TEST_F(CommandRun, ResumedWithMoreFramesAndOtherOutput_GoesOn) {
   EXPECT_EQ(read_json(path("out/run.json"))["frames"].size(), 4u);
   EXPECT_EQ(hash_of_last_frame(path("out")), hash_of_last_frame(path("whole")));
   EXPECT_EQ(files_with(path("out"), ".ply"), 2u);
+  const Finished again = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--resume"});
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.err, HasSubstr("after frame 4, so there is nothing left to do"));
 }
 
 TEST_F(CommandRun, OlderRunInTheFolder_IsNotResumed) {

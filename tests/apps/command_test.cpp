@@ -143,6 +143,16 @@ TEST_F(Command, InfoOfPoints_IsTheSameForEveryFormat) {
   EXPECT_EQ(lines("vtp"), lines("vdb"));
 }
 
+TEST_F(Command, InfoOfAllInAFolder_TellsWhatItCan) {
+  const std::string out = path("out");
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", out, "--frames", "1"}).code, 0);
+  const Finished info = repose({"info", out + "/run.json", out + "/scene.json", out + "/tiny.points.0001.vdb"});
+  EXPECT_EQ(info.code, 64) << "of the scene, which is no file of particles";
+  EXPECT_THAT(info.err, HasSubstr(out + "/scene.json: is not what info can read"));
+  EXPECT_THAT(info.out, HasSubstr("run of tiny by Repose"));
+  EXPECT_THAT(info.out, HasSubstr("1000 points"));
+}
+
 TEST_F(Command, InfoOfARunIntoASolid_TellsTheDeepest) {
   // The box starts with its lower half inside the ground.
   const std::string out = path("out");
