@@ -60,14 +60,16 @@ OutputFolder::~OutputFolder() {
 Result<OutputFolder> OutputFolder::open(const std::string& folder, const std::string& name) {
   const std::string lock_path = folder + "/.lock";
   std::vector<std::string> made = missing_folders(folder);
-  while (true) {
+  // A run that ends may remove its lock file, and folders that it made, between any two of these calls.
+  for (int tries = 100;; --tries) {
     std::error_code failure;
     fs::create_directories(folder, failure);
+    if (failure == std::errc::no_such_file_or_directory && tries > 0) continue;
     if (failure)
       return Error{ErrorKind::kCannotCreate, "cannot be made: " + failure.message() + "; choose another --out",
                    folder};
     const int lock = ::open(lock_path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    if (lock < 0 && errno == ENOENT) continue;  // a run that ends has just removed the folder
+    if (lock < 0 && errno == ENOENT && tries > 0) continue;
     if (lock < 0) {
       return Error{ErrorKind::kCannotCreate,
                    std::string("cannot be written: ") + std::strerror(errno) + "; choose another --out",

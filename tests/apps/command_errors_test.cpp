@@ -165,6 +165,17 @@ TEST_F(CommandErrors, InfoOfNothing_NoInput) {
               HasSubstr("a .vdb, .ply, .vtp or .checkpoint file, or the folder of a run"));
 }
 
+TEST_F(CommandErrors, InfoOfALogThatIsNone_SaysSo) {
+  for (const char* text :
+       {"", "[]", "{}", R"({"frames": 3, "scene": 4})",
+        R"({"repose": "1", "target": "a", "threads": 1, "end": "", "frames": [{"frame": "x"}],
+                               "scene": {"name": "a", "folder": "b"}})"}) {
+    write("run.json", text);
+    EXPECT_THAT(refusal(74, {"info", folder_.string()}), HasSubstr("run.json: is not the log of a run"));
+    EXPECT_THAT(refusal(74, {"movie", folder_.string()}), HasSubstr("run.json: is not the log of a run"));
+  }
+}
+
 TEST_F(CommandErrors, MovieOfNothing_NoInput) {
   EXPECT_THAT(refusal(66, {"movie", path("none")}), HasSubstr("is this the folder of a run?"));
   EXPECT_THAT(refusal(64, {"movie", path("none"), "--first", "5", "--last", "2"}),
