@@ -1,7 +1,9 @@
 // Repose: what the subcommands share.
 #include "apps/repose/command.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 namespace repose {
 
@@ -11,7 +13,14 @@ int fail(const Error& error) {
 }
 
 Result<Scene> read_scene(const SceneArguments& arguments) {
-  return read_scene(arguments.scene, ReadOptions{arguments.set, arguments.allow_outside_paths});
+  ReadOptions options{arguments.set, arguments.allow_outside_paths, Quality::kStandard};
+  const auto* name = std::find(std::begin(kQualityNames), std::end(kQualityNames), arguments.quality);
+  if (name == std::end(kQualityNames)) {
+    return Error{ErrorKind::kUsage, "'" + arguments.quality + "' is not one of draft, standard, reference",
+                 "--quality"};
+  }
+  options.quality = static_cast<Quality>(name - std::begin(kQualityNames));
+  return read_scene(arguments.scene, options);
 }
 
 Result<SimulationOptions> simulation_options(const SceneArguments& arguments) {

@@ -15,6 +15,7 @@ namespace repose {
 struct SceneArguments {
   std::string scene;
   std::vector<std::string> set;  ///< --set a.b=value
+  std::string quality = kQualityNames[static_cast<int>(Quality::kStandard)];
   bool allow_outside_paths = false;
   int threads = 0;     ///< 0: all
   std::string target;  ///< avx512, avx2, baseline; empty: the best

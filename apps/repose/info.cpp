@@ -22,12 +22,17 @@ void print_points(const std::string& path, const PointCloud& points) {
     const auto& v = points.velocity[p];
     fastest = std::max(fastest, std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]));
   }
-  std::printf("%s: %zu points, spacing %g m\n", path.c_str(), points.size(), points.spacing);
+  std::printf("%s: %zu points", path.c_str(), points.size());
+  if (points.spacing > 0.0) std::printf(", spacing %g m", points.spacing);
+  std::printf("\n");
   if (points.size() == 0) return;
   std::printf("  bounds  (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m\n", lower[0], lower[1], lower[2], upper[0],
               upper[1], upper[2]);
   std::printf("  fastest %.4g m/s\n  attributes P v id pscale", fastest);
-  for (const PointAttribute& attribute : points.attributes) std::printf(" %s", attribute.name.c_str());
+  for (const PointAttribute& attribute : points.attributes) {
+    const auto [least, most] = std::minmax_element(attribute.values.begin(), attribute.values.end());
+    std::printf(" %s (%.4g to %.4g)", attribute.name.c_str(), *least, *most);
+  }
   std::printf("\n");
 }
 
@@ -36,11 +41,12 @@ int print_run(const std::string& folder) {
   if (!log) return fail(log.error());
   const Json::Value& frames = (*log)["frames"];
   double deepest = 0.0, seconds = 0.0;
-  std::int64_t steps = 0, at = 0;
+  std::int64_t steps = 0, at = 0, resumed = 0;
   std::string solid;
   for (const Json::Value& frame : frames) {
     seconds += frame["seconds"]["wall"].asDouble();
     steps += frame["steps"].asInt64();
+    resumed += frame["resumed"].asBool() ? 1 : 0;
     const double cells = frame["deepest"]["cells"].asDouble();
     if (cells <= deepest) continue;
     deepest = cells;
@@ -52,6 +58,10 @@ int print_run(const std::string& folder) {
               (*log)["threads"].asInt(), (*log)["end"].asCString());
   std::printf("  frames  %u, %lld steps, %.1f s of computing\n", frames.size(), static_cast<long long>(steps),
               seconds);
+  if (resumed > 0) {
+    std::printf("  resumed within %lld of them: what these took before that is not counted\n",
+                static_cast<long long>(resumed));
+  }
   if (!frames.empty()) {
     const Json::Value& last = frames[frames.size() - 1];
     std::printf("  last    t %.4f s, %llu particles, %.6g kg, hash %s\n", last["time"].asDouble(),
@@ -82,12 +92,19 @@ int print_checkpoint(const std::string& path) {
 int print_file(const std::string& path) {
   if (!std::filesystem::exists(path)) return fail({ErrorKind::kNoInput, "no such file or folder", path});
   if (std::filesystem::is_directory(path)) return print_run(path);
+  const std::filesystem::path file(path);
+  if (file.filename() == "run.json")
+    return print_run(file.has_parent_path() ? file.parent_path().string() : ".");
   const std::string extension = std::filesystem::path(path).extension();
   if (extension == ".checkpoint") return print_checkpoint(path);
-  if (extension != ".vdb" && extension != ".ply") {
-    return fail({ErrorKind::kUsage, "is not a .vdb, .ply or .checkpoint file, nor the folder of a run", path});
+  if (extension != ".vdb" && extension != ".ply" && extension != ".vtp") {
+    return fail({ErrorKind::kUsage,
+                 "is not what info can read: a .vdb, .ply, .vtp or .checkpoint file, or the folder of a run",
+                 path});
   }
-  auto points = extension == ".vdb" ? read_vdb_points(path) : read_ply(path);
+  auto points = extension == ".vdb"   ? read_vdb_points(path)
+                : extension == ".ply" ? read_ply(path)
+                                      : read_vtp(path);
   if (!points) return fail(points.error());
   print_points(path, *points);
   return 0;
@@ -96,10 +113,12 @@ int print_file(const std::string& path) {
 }  // namespace
 
 int info_command(const std::vector<std::string>& files) {
+  int first = 0;  // all that can be read are told, whatever is beside them: `info FOLDER/*`
   for (const std::string& file : files) {
-    if (const int code = print_file(file); code != 0) return code;
+    const int code = print_file(file);
+    if (first == 0) first = code;
   }
-  return 0;
+  return first;
 }
 
 }  // namespace repose

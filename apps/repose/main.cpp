@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "apps/repose/command.h"
+#include "engine/scene/wording.h"
 
 namespace repose {
 namespace {
@@ -15,6 +16,9 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   // One word each: `--set a=1 scene.json` must not take the scene for a second override.
   command.add_option("--set", arguments.set, "override a key: a.b=value; may be given again")
       ->allow_extra_args(false);
+  command.add_option("--quality", arguments.quality,
+                     "draft: grid.spacing x 2, so 8 times fewer particles; standard: the scene as written; "
+                     "reference: time.cfl, sound, isolated and strain x 0.5; --set wins over it");
   command.add_flag("--allow-outside-paths", arguments.allow_outside_paths,
                    "allow meshes outside the scene's folder");
   command.add_option("--threads", arguments.threads, "threads (default: all)")->check(CLI::Range(1, 1024));
@@ -23,12 +27,23 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
       ->envname("REPOSE_TARGET");
 }
 
+/// " (did you mean run?)", where a command is called much like `word`.
+std::string meant(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  const std::string name = nearest(word, names);
+  return alike(word, name) ? " (did you mean " + name + "?)" : "";
+}
+
 /// One message for whatever is wrong with the words, in the form of all others.
 std::string word_failure(const CLI::App* app, const CLI::Error& error) {
   const std::vector<std::string> unknown = app->remaining();
   const bool no_command = app->get_subcommands().empty();
   std::string text = no_command ? "name a command" : error.what();
-  if (no_command && !unknown.empty()) text = "'" + unknown.front() + "' is no command";
+  if (no_command && !unknown.empty())
+    text = "'" + unknown.front() + "' is no command" + meant(*app, unknown.front());
   std::replace(text.begin(), text.end(), '\n', ' ');
   return "repose: error: " + text + "; see repose " +
          (no_command ? "" : app->get_subcommands().front()->get_name() + " ") + "--help\n";
@@ -59,7 +74,9 @@ int main(int count, char** words) {
   add_scene_options(run_app, run.scene);
   run_app.add_option("--out", run.out, "folder (default: out/NAME)");
   run_app.add_option("--frames", run.frames, "A-B: write frames A to B; B: all up to B");
-  run_app.add_flag("--resume", run.resume, "go on after the newest checkpoint in the folder");
+  run_app.add_flag(
+      "--resume", run.resume,
+      "go on after the newest checkpoint in the folder; frames, output and camera may have changed");
   run_app.add_flag("--json", run.json, "one line of JSON per frame on standard output");
   run_app.add_flag("--quiet", run.quiet, "say nothing but errors");
   run_app.callback([&] {
@@ -91,7 +108,7 @@ int main(int count, char** words) {
 
   std::vector<std::string> files;
   CLI::App& info_app = *app.add_subcommand("info", "what a cache, a checkpoint or a run's folder holds");
-  info_app.add_option("files", files, ".vdb, .ply, .checkpoint, or the folder of a run")->required();
+  info_app.add_option("files", files, ".vdb, .ply, .vtp, .checkpoint, or the folder of a run")->required();
   info_app.callback([&] { code = info_command(files); });
 
   MovieArguments movie;

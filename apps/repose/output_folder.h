@@ -10,8 +10,9 @@ namespace repose {
 
 class OutputFolder {
  public:
-  /// Makes the folder and locks it for this process. Errors: 73 it cannot be made or written, 75 another run
-  /// has it.
+  /// Makes the folder and locks it for this process. When the object goes, so does the lock file, and with it
+  /// the folders that were made if nothing was written there. Errors: 73 it cannot be made or written, 75
+  /// another run has it.
   static Result<OutputFolder> open(const std::string& folder, const std::string& name);
   OutputFolder(OutputFolder&& other) noexcept;
   OutputFolder& operator=(OutputFolder&&) = delete;
@@ -31,10 +32,11 @@ class OutputFolder {
   void prune_checkpoints(std::int64_t frame) const;
 
  private:
-  OutputFolder(std::string folder, std::string name, int lock);
+  OutputFolder(std::string folder, std::string name, int lock, std::vector<std::string> made);
 
   std::string folder_, name_;
   int lock_ = -1;
+  std::vector<std::string> made_;  // folders that were not there before, the innermost first
 };
 
 }  // namespace repose

@@ -1,6 +1,5 @@
-// Repose: `repose plan` and `repose check`: what a scene would do, before it does it.
+// Repose: `repose plan`: what a scene would do, before it does it.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "apps/repose/command.h"
@@ -76,30 +75,6 @@ int plan_command(const SceneArguments& arguments) {
   print_effects(*scene);
   print_passes(**simulation);
   print_forecast(*scene, **simulation);
-  return 0;
-}
-
-int check_command(const SceneArguments& arguments) {
-  auto scene = read_scene(arguments);
-  if (!scene) return fail(scene.error());
-  auto options = simulation_options(arguments);
-  if (!options) return fail(options.error());
-  // Meshes and bodies can be wrong too: build everything, run nothing.
-  auto simulation = Simulation::create(*scene, *options);
-  if (!simulation) return fail(simulation.error());
-  for (const MaterialDescription& material : scene->materials) {
-    const auto* sand = std::get_if<DruckerPragerParameters>(&material.parameters);
-    if (sand == nullptr) continue;
-    const double alpha = sand->cone_slope();
-    if (3.0 * alpha / std::sqrt(2.0) >= 1.0) {
-      std::printf(
-          "warning: materials.%s: with friction_angle %g and this cone_matching the sand can never yield in "
-          "plane "
-          "strain; see docs/math.md on cone matching\n",
-          material.name.c_str(), sand->friction_angle);
-    }
-  }
-  std::printf("%s: good; %zu particles\n", arguments.scene.c_str(), (*simulation)->particles());
   return 0;
 }
 

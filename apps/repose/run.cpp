@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "apps/repose/command.h"
 #include "apps/repose/output_folder.h"
@@ -12,6 +13,7 @@
 #include "apps/repose/run_log.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/point_cloud.h"
+#include "engine/scene/identity.h"
 
 namespace repose {
 namespace {
@@ -58,12 +60,13 @@ class Run {
         frames_(frames),
         folder_(std::move(folder)),
         simulation_(std::move(simulation)),
-        log_(scene_, *simulation_) {}
+        log_(scene_, arguments.scene.quality, *simulation_) {}
 
   int go();
 
  private:
   Result<void> resume();
+  Error other_scene(Error error) const;
   void list_series();
   Result<FrameReport> advance(Progress& progress);
   Result<void> write_frame(const FrameReport& frame);
@@ -72,6 +75,7 @@ class Run {
   int interrupted();
   int stop(Error error);
   void tell(const FrameReport& frame, const Json::Value& row) const;
+  void tell_warnings(Progress& progress);
 
   const RunArguments& arguments_;
   Scene scene_;
@@ -79,6 +83,7 @@ class Run {
   OutputFolder folder_;
   std::unique_ptr<Simulation> simulation_;
   RunLog log_;
+  std::size_t warnings_told_ = 0;
   std::vector<std::string> vtp_;
   std::vector<double> vtp_times_;
 };
@@ -91,13 +96,26 @@ Result<void> Run::resume() {
       log_.continue_from(folder_.log(), simulation_->counters().frame);
       list_series();
       if (!arguments_.json && !arguments_.quiet)
-        std::fprintf(stderr, "repose: resuming after frame %lld\n", static_cast<long long>(frame));
+        std::fprintf(stderr, "repose: resuming after frame %lld%s\n", static_cast<long long>(frame),
+                     frame < frames_.last ? "" : ", so there is nothing left to do; --frames N goes further");
       return {};
     }
+    if (loaded.error().kind == ErrorKind::kBadScene) return other_scene(loaded.error());
     if (loaded.error().kind != ErrorKind::kIo) return loaded;
     std::fprintf(stderr, "repose: warning: %s\n", loaded.error().text().c_str());
   }
   return Error{ErrorKind::kNoInput, "holds no checkpoint to resume from; run without --resume", folder_.path()};
+}
+
+/// Says by which key the scene differs from the one that lies in the folder.
+Error Run::other_scene(Error error) const {
+  std::ifstream file(folder_.scene(), std::ios::binary);
+  const std::string before{std::istreambuf_iterator<char>(file), {}};
+  const std::string difference = first_difference(before, scene_.canonical);
+  if (difference.empty()) return error;
+  error.message =
+      "belongs to another scene: " + difference + "; give it back its value, or run without --resume";
+  return error;
 }
 
 /// The series names the frames of the whole run, so also those from before it was resumed.
@@ -116,6 +134,7 @@ Result<FrameReport> Run::advance(Progress& progress) {
   std::int64_t steps = 0;
   return simulation_->advance_frame([&](const StepReport& step, const Counters& counters) {
     ++steps;
+    tell_warnings(progress);
     if (progress.visible()) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const double ns =
@@ -175,6 +194,17 @@ void Run::tell(const FrameReport& frame, const Json::Value& row) const {
                 static_cast<long long>(frames_.last), frame.time, static_cast<long long>(frame.steps),
                 frame.seconds);
     std::fflush(stdout);
+  }
+}
+
+/// As soon as they are known: a run that slows down for ever would not reach the end of its frame.
+void Run::tell_warnings(Progress& progress) {
+  for (; warnings_told_ < simulation_->warnings().size(); ++warnings_told_) {
+    const std::string& warning = simulation_->warnings()[warnings_told_];
+    log_.warn(warning);
+    if (arguments_.quiet) continue;
+    progress.leave();
+    std::fprintf(stderr, "repose: warning: %s\n", warning.c_str());
   }
 }
 
@@ -238,6 +268,7 @@ int Run::go() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);
+  tell_warnings(progress);
   while (simulation_->counters().frame < frames_.last) {
     const std::int64_t before = simulation_->counters().frame;
     auto frame = advance(progress);

@@ -3,6 +3,7 @@
 #include <json/reader.h>
 #include <json/writer.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -54,6 +55,23 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
+/// Whether a row holds what readers of logs ask for.
+bool is_row(const Json::Value& row) {
+  return row.isObject() && row["frame"].isInt64() && row["time"].isNumeric() && row["steps"].isInt64() &&
+         row["particles"].isUInt64() && row["mass"].isNumeric() && row["hash"].isString() &&
+         row["seconds"].isObject() && row["seconds"]["wall"].isNumeric() && row["deepest"].isObject() &&
+         row["deepest"]["cells"].isNumeric();
+}
+
+/// Whether it is a log: a file that was edited, or is of another program, must not end this one.
+bool is_log(const Json::Value& log) {
+  if (!log.isObject() || !log["scene"].isObject() || !log["frames"].isArray()) return false;
+  const bool head = log["scene"]["name"].isString() && log["scene"]["folder"].isString() &&
+                    log["repose"].isString() && log["target"].isString() && log["threads"].isInt() &&
+                    log["end"].isString();
+  return head && std::all_of(log["frames"].begin(), log["frames"].end(), is_row);
+}
+
 }  // namespace
 
 std::string one_line(const Json::Value& json) {
@@ -62,12 +80,13 @@ std::string one_line(const Json::Value& json) {
   return Json::writeString(builder, json);
 }
 
-RunLog::RunLog(const Scene& scene, const Simulation& simulation) {
+RunLog::RunLog(const Scene& scene, const std::string& quality, const Simulation& simulation) {
   log_["repose"] = REPOSE_VERSION;
   log_["compiler"] = __VERSION__;
   log_["target"] = target_name(simulation.target());
   log_["threads"] = simulation.threads();
   log_["scene"]["name"] = scene.name;
+  log_["scene"]["quality"] = quality;
   log_["scene"]["hash"] = scene_hash(scene);
   log_["scene"]["folder"] =
       std::filesystem::absolute(scene.folder.empty() ? "." : scene.folder).lexically_normal().string();
@@ -80,6 +99,7 @@ RunLog::RunLog(const Scene& scene, const Simulation& simulation) {
     json["why"] = effect.reason;
     json["bytes_per_particle"] = Json::UInt64(effect.bytes_per_particle);
   }
+  log_["warnings"] = Json::Value(Json::arrayValue);
   log_["frames"] = Json::Value(Json::arrayValue);
   log_["end"] = "running";
 }
@@ -87,16 +107,26 @@ RunLog::RunLog(const Scene& scene, const Simulation& simulation) {
 void RunLog::continue_from(const std::string& path, std::int64_t last) {
   std::ifstream file(path);
   Json::Value old;
-  if (!file || !Json::parseFromStream(Json::CharReaderBuilder(), file, &old, nullptr)) return;
+  if (!file || !Json::parseFromStream(Json::CharReaderBuilder(), file, &old, nullptr) || !is_log(old)) return;
   for (const Json::Value& frame : old["frames"]) {
     if (frame["frame"].asInt64() <= last) log_["frames"].append(frame);
   }
+  for (const Json::Value& warning : old["warnings"]) {
+    if (warning.isString()) warn(warning.asString());
+  }
+}
+
+void RunLog::warn(const std::string& warning) {
+  Json::Value& warnings = log_["warnings"];
+  if (std::find(warnings.begin(), warnings.end(), Json::Value(warning)) == warnings.end())
+    warnings.append(warning);
 }
 
 const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation) {
   Json::Value row;
   row["frame"] = Json::Int64(frame.frame);
   row["time"] = frame.time;
+  if (frame.resumed) row["resumed"] = true;  // steps, dt, limits and seconds are those since then
   row["steps"] = Json::Int64(frame.steps);
   row["dt"]["least"] = frame.least_dt;
   row["dt"]["largest"] = frame.largest_dt;
@@ -132,8 +162,8 @@ Result<Json::Value> read_run_log(const std::string& folder) {
   if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is this the folder of a run?", path};
   Json::Value log;
   std::string message;
-  if (!Json::parseFromStream(Json::CharReaderBuilder(), file, &log, &message) || !log.isObject()) {
-    return Error{ErrorKind::kIo, "is not the log of a run", path};
+  if (!Json::parseFromStream(Json::CharReaderBuilder(), file, &log, &message) || !is_log(log)) {
+    return Error{ErrorKind::kIo, "is not the log of a run; give a folder that run has written", path};
   }
   return log;
 }

@@ -14,10 +14,14 @@ namespace repose {
 
 class RunLog {
  public:
-  RunLog(const Scene& scene, const Simulation& simulation);
+  RunLog(const Scene& scene, const std::string& quality, const Simulation& simulation);
 
-  /// Takes over the frames up to `last` of the log of an earlier part of the run, if there is one at `path`.
+  /// Takes over the warnings, and the frames up to `last`, of the log of an earlier part of the run, if there
+  /// is one at `path`.
   void continue_from(const std::string& path, std::int64_t last);
+
+  /// Keeps a warning, once.
+  void warn(const std::string& warning);
 
   /// Adds a frame and returns its row.
   const Json::Value& add(const FrameReport& frame, Simulation& simulation);

@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written as memory lies");
 
-constexpr char kMagic[16] = "REPOSE STATE 1\n";
+constexpr char kMagic[16] = "REPOSE STATE 2\n";
 
 struct ChunkHead {
   char name[16] = {};
@@ -34,7 +34,38 @@ struct Head {
   std::uint64_t owners = 0;
   Counters counters;
 };
-static_assert(std::is_trivially_copyable_v<Head>);
+
+/// Visits every field in the order of the file. One by one: a struct as a whole has gaps between its fields
+/// that hold whatever was there before, and equal states would not give equal files.
+template <class AnyHead, class Visit>
+void for_each_field(AnyHead& head, Visit visit) {
+  visit(head.scene_hash);
+  visit(head.precision_bytes);
+  visit(head.sets);
+  visit(head.particles);
+  visit(head.owners);
+  auto& counters = head.counters;
+  visit(counters.frame);
+  visit(counters.step);
+  visit(counters.time_in_frame);
+  visit(counters.time);
+  visit(counters.last_dt);
+  visit(counters.max_speed);
+  visit(counters.max_gradient);
+  visit(counters.order_due);
+  visit(counters.runs_when_ordered);
+  visit(counters.runs_wasted);
+  visit(counters.orders);
+}
+
+std::string bytes_of(const Head& head) {
+  std::string bytes;
+  for_each_field(head, [&bytes](const auto& field) {
+    static_assert(std::is_trivially_copyable_v<std::remove_cvref_t<decltype(field)>>);
+    bytes.append(reinterpret_cast<const char*>(&field), sizeof field);
+  });
+  return bytes;
+}
 
 std::uint64_t checksum_of(const void* data, std::size_t bytes) {
   return crc32_z(crc32_z(0, nullptr, 0), static_cast<const Bytef*>(data), bytes);
@@ -104,7 +135,13 @@ Result<void> for_each_array(Set& set, std::size_t k, Visit visit) {
 
 Result<Head> read_head(ChunkReader& reader) {
   Head head;
-  if (auto read = reader.read("head", &head, sizeof head); !read) return read.error();
+  std::string bytes = bytes_of(head);  // for its size
+  if (auto read = reader.read("head", bytes.data(), bytes.size()); !read) return read.error();
+  const char* next = bytes.data();
+  for_each_field(head, [&next](auto& field) {
+    std::memcpy(&field, next, sizeof field);
+    next += sizeof field;
+  });
   return head;
 }
 
@@ -122,7 +159,8 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   head.particles = state.particles();
   head.owners = state.grid.owners().size();
   head.counters = state.counters;
-  if (auto written = write_chunk(*file, "head", &head, sizeof head); !written) return written;
+  const std::string head_bytes = bytes_of(head);
+  if (auto written = write_chunk(*file, "head", head_bytes.data(), head_bytes.size()); !written) return written;
   std::vector<Index3> owners;
   for (const std::int32_t owner : state.grid.owners()) {
     owners.push_back(state.grid.blocks()[static_cast<std::size_t>(owner)]);

@@ -12,7 +12,7 @@ namespace repose {
 
 /// What a checkpoint says of itself.
 struct CheckpointHeader {
-  std::string scene_hash;  ///< of the canonical scene that the state belongs to
+  std::string scene_hash;  ///< of the scene that the state belongs to
   int precision_bytes = 4;
   std::uint64_t particles = 0;
   Counters counters;

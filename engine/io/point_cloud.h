@@ -46,5 +46,7 @@ Result<void> write_vtp_series(const std::vector<std::string>& paths, const std::
 /// Repose wrote. A PLY file may lack all but x, y and z: ids then count from 0, the rest is 0.
 Result<PointCloud> read_vdb_points(const std::string& path);
 Result<PointCloud> read_ply(const std::string& path);
+/// VTP only as Repose writes it; the spacing is not in it and stays 0.
+Result<PointCloud> read_vtp(const std::string& path);
 
 }  // namespace repose

@@ -1,5 +1,5 @@
 // Repose: particles as VTK PolyData (XML, raw appended binary), for ParaView and f3d, and the list that makes a
-// sequence of them play with its times. Written only: what ParaView edits does not come back.
+// sequence of them play with its times.
 #include <bit>
 #include <cstdint>
 #include <cstdio>

@@ -85,18 +85,36 @@ double physical_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+/// "3.2 MB".
+std::string bytes_text(double bytes) {
+  const char* unit = "B";
+  for (const char* larger : {"kB", "MB", "GB", "TB"}) {
+    if (bytes < 1000.0) break;
+    bytes /= 1000.0;
+    unit = larger;
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %s", bytes, unit);
+  return text;
+}
+
+/// Ids have 32 bits.
+constexpr double kMostParticles = 4.0e9;
+
 /// Refuses, before anything is allocated, a body that would not fit.
 Result<void> check_memory(const Scene& scene, double particles, double limit) {
   const double bytes =
       particles * static_cast<double>(bytes_per_particle(scene) + 40);  // 40: seeds, while they last
-  if (bytes <= limit && particles < 4.0e9) return {};
-  const double allowed = std::min(limit / bytes, 4.0e9 / particles);
-  char text[256];
-  std::snprintf(
-      text, sizeof text,
-      "needs about %.1f GB for %.3g particles, and %.1f GB may be used; a spacing of %.3g m or more fits",
-      bytes * 1e-9, particles, limit * 1e-9, scene.grid.spacing / std::cbrt(allowed));
-  return Error{ErrorKind::kMemory, text, "grid.spacing"};
+  if (bytes <= limit && particles < kMostParticles) return {};
+  const double allowed = std::min(limit / bytes, kMostParticles / particles);
+  char count[64], spacing[64];
+  std::snprintf(count, sizeof count, "%.3g particles", particles);
+  std::snprintf(spacing, sizeof spacing, "; a spacing of %.3g m or more fits",
+                scene.grid.spacing / std::cbrt(allowed));
+  const std::string most =
+      bytes > limit ? "and " + bytes_text(limit) + " may be used" : "and 4e9 particles can be told apart";
+  return Error{ErrorKind::kMemory, "needs about " + bytes_text(bytes) + " for " + count + ", " + most + spacing,
+               scene.where("grid.spacing")};
 }
 
 template <class Real>
@@ -105,7 +123,8 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
   double particles = 0.0;
   for (const BodyDescription& body : scene.bodies) {
     auto shape = make_shape(body.shape, scene.folder, scene.grid.spacing, options.allow_outside_paths);
-    if (!shape) return Error{shape.error().kind, shape.error().text(), "bodies." + body.name + ".shape"};
+    if (!shape)
+      return Error{shape.error().kind, shape.error().text(), scene.where("bodies." + body.name + ".shape")};
     const double cells = (*shape)->volume() / std::pow(scene.grid.spacing, 3);
     if (!scene.grid.plane_strain) particles += cells * static_cast<double>(body.particles_per_cell);
     shapes.push_back(*shape);
@@ -121,7 +140,7 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     SeedOptions seeding{scene.grid.spacing, body.particles_per_cell, body.sampling,
                         static_cast<std::uint64_t>(body.seed), scene.grid.plane_strain};
     auto seeds = seed_shape(*shapes[k], seeding);
-    if (!seeds) return Error{seeds.error().kind, seeds.error().text(), "bodies." + body.name};
+    if (!seeds) return Error{seeds.error().kind, seeds.error().text(), scene.where("bodies." + body.name)};
     const Bounds bounds = shapes[k]->bounds();
     ParticleSet<Real> set;
     set.material = material_index(scene, body.material);
@@ -213,7 +232,9 @@ Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_p
   std::vector<Solid> solids;
   for (const Collider& collider : scene.effect<Colliders>().list) {
     auto shape = make_shape(collider.shape, scene.folder, scene.grid.spacing, allow_outside_paths);
-    if (!shape) return Error{shape.error().kind, shape.error().text(), "colliders." + collider.name + ".shape"};
+    if (!shape)
+      return Error{shape.error().kind, shape.error().text(),
+                   scene.where("colliders." + collider.name + ".shape")};
     solids.push_back({collider.name, *shape, collider.hollow, collider.contact, collider.friction});
   }
   return solids;

@@ -129,7 +129,7 @@ void apply(const std::string& argument, Json::Value& root, std::ptrdiff_t offset
 void apply_overrides(const std::vector<std::string>& overrides, Json::Value& root, SourceText& source,
                      Complaints& complaints) {
   for (const std::string& argument : overrides)
-    apply(argument, root, source.add_override(argument), complaints);
+    apply(argument, root, source.add_words("--set " + argument), complaints);
 }
 
 }  // namespace repose

@@ -1,15 +1,17 @@
-// Repose: from a scene file to a Scene: text, tree, overrides, parameters, then the keys. Complaints of all
-// these are gathered; only a file that is not JSON at all ends it early.
+// Repose: from a scene file to a Scene: text, tree, quality, overrides, parameters, then the keys. Complaints
+// of all these are gathered; only a file that is not JSON at all ends it early.
 #include "engine/scene/reader.h"
 
 #include <filesystem>
 #include <fstream>
 
 #include "engine/scene/complaints.h"
+#include "engine/scene/identity.h"
 #include "engine/scene/json_fields.h"
 #include "engine/scene/json_text.h"
 #include "engine/scene/overrides.h"
 #include "engine/scene/parameters.h"
+#include "engine/scene/quality.h"
 #include "engine/scene/wording.h"
 
 namespace repose {
@@ -60,6 +62,22 @@ void check_mesh_paths(const Json::Value& root, Complaints& complaints) {
   }
 }
 
+/// Notes where the values of objects stand, for errors that only the compiler can find.
+void find_places(const Json::Value& value, const std::string& path, const SourceText& source,
+                 std::map<std::string, std::string>& places) {
+  if (!path.empty()) places[path] = source.place(value.getOffsetStart());
+  const std::string start = path.empty() ? "" : path + ".";
+  if (value.isObject()) {
+    for (const std::string& name : value.getMemberNames())
+      find_places(value[name], start + name, source, places);
+  } else if (value.isArray()) {
+    for (const Json::Value& element : value) {
+      const bool named = element.isObject() && element["name"].isString();
+      if (named) find_places(element, start + element["name"].asString(), source, places);
+    }
+  }
+}
+
 }  // namespace
 
 Result<Scene> read_scene_text(const std::string& text, const std::string& name, const std::string& folder,
@@ -75,6 +93,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   }
 
   Expressions expressions;
+  apply_quality(options.quality, root, source);
   apply_overrides(options.overrides, root, source, complaints);
   evaluate_parameters(root, expressions, complaints);
   Scene scene;
@@ -85,7 +104,9 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   if (!options.allow_outside_paths) check_mesh_paths(root, complaints);
   if (!complaints.empty()) return complaints.error(source);
 
+  find_places(root, "", source, scene.places);
   scene.folder = folder;
+  scene.identity = identity_text(root);
   scene.canonical = compact_json(root);
   return scene;
 }

@@ -10,10 +10,15 @@
 
 namespace repose {
 
+/// What "--quality" can be; apply_quality says what each does.
+enum class Quality { kDraft, kStandard, kReference };
+inline constexpr const char* kQualityNames[] = {"draft", "standard", "reference"};
+
 struct ReadOptions {
   /// "a.b=value" and "a[0].b=value", applied before the scene is read; value is JSON, else taken as text.
   std::vector<std::string> overrides;
-  bool allow_outside_paths = false;  ///< allow mesh paths that leave the scene's folder
+  bool allow_outside_paths = false;      ///< allow mesh paths that leave the scene's folder
+  Quality quality = Quality::kStandard;  ///< applied before the overrides, so that these win
 };
 
 /// Reads a scene. A number may be written as text that begins with "=", an expression over the scene's

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -110,9 +111,17 @@ struct Scene {
     return std::get<E>(effects);
   }
 
-  std::string folder;     ///< where relative paths start
-  std::string canonical;  ///< the scene as compact JSON after overrides and expressions; what is hashed and
-                          ///< kept beside a run
+  /// A key as errors found after reading name it: "file:line:col: grid.spacing", or the key alone where a host
+  /// filled the scene. Elements of lists go by name: "bodies.box.shape".
+  std::string where(const std::string& key) const {
+    const auto place = places.find(key);
+    return place == places.end() ? key : place->second + ": " + key;
+  }
+
+  std::map<std::string, std::string> places;  ///< where each key of the file stands, "file:line:col"
+  std::string folder;                         ///< where relative paths start
+  std::string identity;   ///< what a state of it depends on (engine/scene/identity.h); what is hashed
+  std::string canonical;  ///< all of it as compact JSON after overrides and expressions; kept beside a run
 };
 
 void describe(Fields& fields, Scene& scene);

@@ -107,14 +107,14 @@ std::optional<std::ptrdiff_t> SourceText::deeper_than(int limit) const {
   return std::nullopt;
 }
 
-std::ptrdiff_t SourceText::add_override(const std::string& argument) {
-  overrides_.push_back(argument);
-  return static_cast<std::ptrdiff_t>(text_.size() + overrides_.size());
+std::ptrdiff_t SourceText::add_words(const std::string& words) {
+  words_.push_back(words);
+  return static_cast<std::ptrdiff_t>(text_.size() + words_.size());
 }
 
 std::string SourceText::place(std::ptrdiff_t offset) const {
   const std::ptrdiff_t behind = offset - static_cast<std::ptrdiff_t>(text_.size()) - 1;
-  if (behind >= 0) return "--set " + overrides_.at(static_cast<std::size_t>(behind));
+  if (behind >= 0) return words_.at(static_cast<std::size_t>(behind));
 
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const std::ptrdiff_t line = after - line_starts_.begin();

@@ -1,4 +1,4 @@
-// Repose: the text of a scene, and where in it a value stands. A place is an offset in bytes; the overrides
+// Repose: the text of a scene, and where in it a value stands. A place is an offset in bytes; the words
 // of the command line are laid end to end behind the file, so that one number names a place in either.
 #pragma once
 
@@ -17,10 +17,11 @@ class SourceText {
 
   const std::string& text() const { return text_; }
 
-  /// Registers an override and gives the offset that stands for its value.
-  std::ptrdiff_t add_override(const std::string& argument);
+  /// Registers words of the command line, such as "--set a.b=v", and gives the offset that stands for what they
+  /// put into the scene.
+  std::ptrdiff_t add_words(const std::string& words);
 
-  /// "file:line:col", both from 1, columns in characters; "--set a.b=v" for the offset of an override.
+  /// "file:line:col", both from 1, columns in characters; the words for the offset of words.
   std::string place(std::ptrdiff_t offset) const;
 
   /// Offset of the key of the value that starts at `value`; `value` itself where it has no key in the file.
@@ -40,7 +41,7 @@ class SourceText {
   std::string text_;
   std::vector<std::ptrdiff_t> line_starts_;
   std::map<std::ptrdiff_t, std::ptrdiff_t> key_of_value_;
-  std::vector<std::string> overrides_;
+  std::vector<std::string> words_;
 };
 
 }  // namespace repose

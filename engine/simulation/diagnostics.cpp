@@ -89,12 +89,12 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
   // D, the second moment of a stencil about its particle.
   const double inverse_d = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)].inverse_d;
   const double affine_inertia = state.spacing * state.spacing / inverse_d;
-  const double block_radius = 0.5 * std::sqrt(3.0) * (kHighestBase - kLowestBase + 2) * state.spacing;
+  const double radius = block_radius(state.spacing);
   threads.for_each(owners.size(), [&](std::size_t owner) {
     const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
     const Vec3 center = state.world(block, {2.0, 2.0, 2.0});
     const bool near = std::any_of(solids.begin(), solids.end(),
-                                  [&](const Solid& solid) { return solid.distance(center) < block_radius; });
+                                  [&](const Solid& solid) { return solid.distance(center) < radius; });
     for (const auto& set : state.sets) {
       const Elasticity& elasticity = elasticity_of(scene, set.material);
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {

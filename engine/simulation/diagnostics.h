@@ -2,6 +2,7 @@
 // run per block in double and then over blocks in their order, so they do not depend on threads.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -38,6 +39,11 @@ struct MemoryUse {
   std::size_t blocks = 0;
   std::uint64_t active_nodes = 0;
 };
+
+/// How far a particle of a block can be from the block's middle, m.
+inline double block_radius(double spacing) {
+  return 0.5 * std::sqrt(3.0) * (kHighestBase - kLowestBase + 2) * spacing;
+}
 
 template <class Real>
 Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state,

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "engine/io/checkpoint.h"
+#include "engine/simulation/warnings.h"
 #include "engine/state/state_hash.h"
 
 namespace repose {
@@ -42,6 +43,10 @@ class SimulationOf final : public Simulation {
         state_(std::move(compiled.state)),
         stepper_(std::move(compiled.plan), threads) {
     stepper_.order_if_due(state_);
+    warnings_ = scene_warnings(scene_);
+    for (std::string& warning : seeding_warnings(solids_, state_, stepper_.threads())) {
+      warnings_.push_back(std::move(warning));
+    }
   }
 
   Result<StepReport> step() override {
@@ -50,6 +55,7 @@ class SimulationOf final : public Simulation {
     if (!report.accepted)
       return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
     state_.counters.time += report.dt;
+    watch_speed();
     return report;
   }
 
@@ -71,6 +77,7 @@ class SimulationOf final : public Simulation {
   Target target() const override { return target_; }
   int threads() const override { return const_cast<Stepper<Real>&>(stepper_).threads().count(); }
   const std::vector<Solid>& solids() const override { return solids_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
 
   Result<void> save(const std::string& path) const override {
     return save_checkpoint(state_, scene_hash(scene_), path);
@@ -82,12 +89,22 @@ class SimulationOf final : public Simulation {
   }
 
  private:
+  void watch_speed() {
+    if (warned_of_speed_) return;
+    if (auto warning = speed_warning(stepper_.plan(), state_)) {
+      warnings_.push_back(std::move(*warning));
+      warned_of_speed_ = true;
+    }
+  }
+
   Scene scene_;
   Target target_;
   std::vector<Solid> solids_;
   State<Real> state_;
   Stepper<Real> stepper_;
   std::optional<Offender> offender_;
+  std::vector<std::string> warnings_;
+  bool warned_of_speed_ = false;
 };
 
 template <class Real>
@@ -95,6 +112,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   const double fps = scene_.time.frames_per_second;
   Counters& counters = state_.counters;
   FrameReport frame;
+  frame.resumed = counters.time_in_frame > 0.0;
   frame.least_dt = std::numeric_limits<double>::infinity();
   const Profile before = stepper_.profile();
   const auto start = std::chrono::steady_clock::now();
@@ -114,6 +132,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     ++frame.limits[static_cast<std::size_t>(report.limit)];
     frame.least_dt = std::min(frame.least_dt, report.dt);
     frame.largest_dt = std::max(frame.largest_dt, report.dt);
+    watch_speed();
     if (callback && !callback(report, counters)) break;
   }
   if (counters.time_in_frame >= length) {
@@ -225,7 +244,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const Scene& scene, const
 
 std::string scene_hash(const Scene& scene) {
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(scene.canonical)));
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fnv1a(scene.identity)));
   return text;
 }
 

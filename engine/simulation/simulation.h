@@ -30,6 +30,7 @@ struct SimulationOptions {
 struct FrameReport {
   std::int64_t frame = 0;  ///< the frame that is now complete
   double time = 0.0;       ///< s
+  bool resumed = false;    ///< it was begun before: what it took until then is in none of the figures below
   std::int64_t steps = 0;
   double least_dt = 0.0, largest_dt = 0.0;  ///< s
   std::array<std::int64_t, 6> limits{};     ///< steps bound by each Limit
@@ -70,13 +71,16 @@ class Simulation {
   virtual Target target() const = 0;
   virtual int threads() const = 0;
   virtual const std::vector<Solid>& solids() const = 0;
+  /// What the scene most likely does not mean, though it is no error. Of the scene and where its bodies start
+  /// when it is made; steps may add to it, each kind once.
+  virtual const std::vector<std::string>& warnings() const = 0;
 
   /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74.
   virtual Result<void> save(const std::string& path) const = 0;
   virtual Result<void> load(const std::string& path) = 0;
 };
 
-/// The hash of a scene's canonical text, 16 hexadecimal digits.
+/// The hash of a scene's identity, 16 hexadecimal digits: equal where a state of one goes on in the other.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace repose

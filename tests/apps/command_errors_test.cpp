@@ -62,7 +62,8 @@ TEST_F(CommandErrors, MeshOutsideTheFolder_IsRefusedUnlessAllowed) {
 }
 
 TEST_F(CommandErrors, NoParticle_NamesTheBody) {
-  EXPECT_THAT(refused_override(65, "grid.spacing=10"), HasSubstr("bodies.box: the shape holds no particle"));
+  EXPECT_THAT(refused_override(65, "grid.spacing=10"),
+              HasSubstr("tiny.json:4:14: bodies.box: the shape holds no particle"));
 }
 
 TEST_F(CommandErrors, NoScene_NoInput) {
@@ -72,8 +73,20 @@ TEST_F(CommandErrors, NoScene_NoInput) {
 
 TEST_F(CommandErrors, MoreMemoryThanThereIs_NamesASpacingThatFits) {
   const std::string message = refused_override(78, "grid.spacing=1e-6");
-  EXPECT_THAT(message, HasSubstr("grid.spacing"));
+  EXPECT_THAT(message, HasSubstr("--set grid.spacing=1e-6: grid.spacing: needs about "));
   EXPECT_THAT(message, EndsWith(" m or more fits\n"));
+}
+
+TEST_F(CommandErrors, MoreMemoryThanThereIs_NamesThePlaceInTheFile) {
+  std::string text = R"({"repose": 1, "name": "fine",
+  "grid": {"spacing": 1e-6},
+  "materials": {"sand": {"type": "drucker_prager"}},
+  "bodies": [{"name": "box", "material": "sand", "shape": {"type": "box", "lower": [0, 0, 0],
+    "upper": [1, 1, 1]}}]})";
+  const std::string scene = write("fine.json", text);
+  const std::string message = refusal(78, {"check", scene});
+  EXPECT_THAT(message, HasSubstr(scene + ":2:23: grid.spacing: needs about "));
+  EXPECT_THAT(message, HasSubstr(" TB for 8e+18 particles, and "));
 }
 
 TEST_F(CommandErrors, FolderThatCannotBe_NamesIt) {
@@ -92,24 +105,47 @@ TEST_F(CommandErrors, FolderInUse_NamesIt) {
   EXPECT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "1"}).code, 0);
 }
 
+TEST_F(CommandErrors, RunThatCannotStart_LeavesNothing) {
+  const std::string scene = tiny_scene();
+  refusal(65, {"run", scene, "--out", path("new/out"), "--set", "grid.spacing=10"});
+  EXPECT_FALSE(std::filesystem::exists(path("new"))) << "the folders that it made";
+  std::filesystem::create_directories(path("old"));
+  refusal(65, {"run", scene, "--out", path("old"), "--set", "grid.spacing=10"});
+  EXPECT_TRUE(std::filesystem::is_empty(path("old")));
+  refusal(66, {"run", scene, "--out", path("old"), "--resume"});
+  EXPECT_TRUE(std::filesystem::is_empty(path("old")));
+  ASSERT_EQ(repose({"run", scene, "--out", path("old"), "--frames", "1"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("old/.lock"))) << "nor does one that ends";
+}
+
 TEST_F(CommandErrors, ResumeOfNothing_NoInput) {
   EXPECT_THAT(refusal(66, {"run", tiny_scene(), "--out", path("out"), "--resume"}), HasSubstr("no checkpoint"));
 }
 
 TEST_F(CommandErrors, ResumeOfAnotherScene_NamesBoth) {
   ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--frames", "1"}).code, 0);
-  EXPECT_THAT(
-      refusal(65, {"run", tiny_scene(), "--out", path("out"), "--resume", "--set", "bodies.box.seed=7"}),
-      HasSubstr("belongs to another scene"));
+  const auto refused = [&](const std::string& override) {
+    return refusal(65, {"run", tiny_scene(), "--out", path("out"), "--resume", "--set", override});
+  };
+  EXPECT_THAT(refused("bodies.box.shape.upper=[0.1,0.12,0.2]"),
+              HasSubstr("belongs to another scene: bodies.box.shape.upper[2] was 0.1 and is 0.2 now; "));
+  EXPECT_THAT(refused("bodies.box.seed=7"), HasSubstr("bodies.box.seed was not there and is 7 now; "));
+  EXPECT_THAT(refused("grid.precision=double"),
+              HasSubstr("grid.precision was not there and is \"double\" now; "));
+  EXPECT_THAT(refused("colliders=[]"), HasSubstr("colliders was [{"));
 }
 
 TEST_F(CommandErrors, UnknownWords_AreUsage) {
   const std::string scene = tiny_scene();
   EXPECT_THAT(refusal(64, {}), HasSubstr("name a command"));
-  EXPECT_THAT(refusal(64, {"sculpt"}), HasSubstr("'sculpt' is no command"));
+  EXPECT_THAT(refusal(64, {"sculpt"}), HasSubstr("'sculpt' is no command; see repose --help"));
+  EXPECT_THAT(refusal(64, {"chekc"}),
+              HasSubstr("'chekc' is no command (did you mean check?); see repose --help"));
   EXPECT_THAT(refusal(64, {"run", scene, "--bogus"}), HasSubstr("--bogus"));
   EXPECT_THAT(refusal(64, {"run"}), HasSubstr("scene"));
   EXPECT_THAT(refusal(64, {"run", scene, "--target", "sse2"}), HasSubstr("'sse2' is not one of avx512, avx2"));
+  EXPECT_THAT(refusal(64, {"run", scene, "--quality", "best"}),
+              HasSubstr("'best' is not one of draft, standard"));
   EXPECT_THAT(refusal(64, {"run", scene, "--threads", "0"}), HasSubstr("--threads"));
   EXPECT_THAT(refusal(64, {"bench", scene, "--steps", "0"}), HasSubstr("--steps"));
 }
@@ -125,7 +161,19 @@ TEST_F(CommandErrors, FramesThatAreNoRange_AreUsage) {
 TEST_F(CommandErrors, InfoOfNothing_NoInput) {
   EXPECT_THAT(refusal(66, {"info", path("none")}), HasSubstr("none"));
   EXPECT_THAT(refusal(66, {"info", folder_.string()}), HasSubstr("is this the folder of a run?"));
-  EXPECT_THAT(refusal(64, {"info", tiny_scene()}), HasSubstr("is not a .vdb, .ply or .checkpoint file"));
+  EXPECT_THAT(refusal(64, {"info", tiny_scene()}),
+              HasSubstr("a .vdb, .ply, .vtp or .checkpoint file, or the folder of a run"));
+}
+
+TEST_F(CommandErrors, InfoOfALogThatIsNone_SaysSo) {
+  for (const char* text :
+       {"", "[]", "{}", R"({"frames": 3, "scene": 4})",
+        R"({"repose": "1", "target": "a", "threads": 1, "end": "", "frames": [{"frame": "x"}],
+                               "scene": {"name": "a", "folder": "b"}})"}) {
+    write("run.json", text);
+    EXPECT_THAT(refusal(74, {"info", folder_.string()}), HasSubstr("run.json: is not the log of a run"));
+    EXPECT_THAT(refusal(74, {"movie", folder_.string()}), HasSubstr("run.json: is not the log of a run"));
+  }
 }
 
 TEST_F(CommandErrors, MovieOfNothing_NoInput) {

@@ -107,6 +107,76 @@ TEST_F(CommandRun, FramesFromTo_WritesOnlyThose) {
   EXPECT_FALSE(std::filesystem::exists(path("out/tiny.points.0005.vdb")));
 }
 
+TEST_F(CommandRun, Quality_IsWhatItsHelpSays) {
+  const auto scene_of = [&](const std::string& quality) {
+    std::vector<std::string> words{"run", tiny_scene(), "--out", path(quality), "--frames", "1", "--quiet"};
+    if (quality != "unsaid") words.insert(words.end(), {"--quality", quality});
+    EXPECT_EQ(repose(words).code, 0) << quality;
+    return read_json(path(quality + "/scene.json"));
+  };
+  const Json::Value unsaid = scene_of("unsaid"), standard = scene_of("standard"), draft = scene_of("draft"),
+                    reference = scene_of("reference");
+  EXPECT_EQ(standard, unsaid);
+  EXPECT_DOUBLE_EQ(draft["grid"]["spacing"].asDouble(), 2.0 * unsaid["grid"]["spacing"].asDouble());
+  EXPECT_DOUBLE_EQ(reference["time"]["sound"].asDouble(), 0.25);
+  const auto row = [&](const std::string& quality) {
+    return read_json(path(quality + "/run.json"))["frames"][0];
+  };
+  EXPECT_EQ(row("draft")["particles"], 125);
+  EXPECT_EQ(row("reference")["particles"], 1000);
+  EXPECT_EQ(row("standard")["hash"], row("unsaid")["hash"]);
+  EXPECT_NEAR(row("reference")["steps"].asDouble(), 2.0 * row("unsaid")["steps"].asDouble(), 1.0);
+  EXPECT_EQ(read_json(path("draft/run.json"))["scene"]["quality"], "draft");
+  EXPECT_EQ(read_json(path("unsaid/run.json"))["scene"]["quality"], "standard");
+  EXPECT_THAT(repose({"run", "--help"}).out, HasSubstr("draft: grid.spacing x 2"));
+}
+
+TEST_F(CommandRun, Warnings_AreThoseOfCheckAndInTheLog) {
+  const std::vector<std::string> odd{"--set", "materials.sand.friction_angle=43", "--set",
+                                     "bodies.box.shape.lower=[0,-0.08,0]"};
+  const auto command = [&](std::vector<std::string> words) {
+    words.insert(words.end(), odd.begin(), odd.end());
+    return repose(words);
+  };
+  const Finished check = command({"check", tiny_scene()});
+  const Finished run = command({"run", tiny_scene(), "--out", path("out"), "--frames", "1"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json::Value warnings = read_json(path("out/run.json"))["warnings"];
+  ASSERT_EQ(warnings.size(), 2u);
+  for (const Json::Value& warning : warnings) {
+    EXPECT_THAT(run.err, HasSubstr("repose: warning: " + warning.asString() + "\n"));
+    EXPECT_THAT(check.out, HasSubstr("warning: " + warning.asString() + "\n"));
+  }
+  EXPECT_THAT(warnings[0].asString(), HasSubstr("materials.sand: with friction_angle 43"));
+  EXPECT_THAT(warnings[1].asString(), HasSubstr("bodies.box: "));
+  const Finished quiet = command({"run", tiny_scene(), "--out", path("out"), "--frames", "1", "--quiet"});
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_EQ(read_json(path("out/run.json"))["warnings"].size(), 2u) << "unsaid, but kept";
+  const Finished more = command({"run", tiny_scene(), "--out", path("out"), "--frames", "2", "--resume"});
+  EXPECT_EQ(more.code, 0);
+  EXPECT_EQ(read_json(path("out/run.json"))["warnings"].size(), 2u) << "a resumed run does not keep them twice";
+}
+
+TEST_F(CommandRun, SandThatFallsForEver_IsToldOnce) {
+  // With 1000 m/s^2 it passes four times the speed at which a particle and a wave cross cells alike in 0.1 s.
+  const std::vector<std::string> words{
+      "run", tiny_scene(R"(, "gravity": {"acceleration": [0, -1000, 0]})"), "--out", path("out"), "--frames",
+      "20"};
+  std::vector<std::string> floorless = words;
+  floorless.insert(floorless.end(), {"--set", "colliders=[]"});
+  const Finished falling = repose(floorless);
+  ASSERT_EQ(falling.code, 0) << falling.err;
+  EXPECT_EQ(std::count(falling.err.begin(), falling.err.end(), '\n'), 1) << falling.err;
+  EXPECT_THAT(falling.err,
+              ::testing::ContainsRegex(
+                  "^repose: warning: particle [0-9]+ of 'box' at \\(.*, -.*, .*\\) m moves at [0-9.]+ "
+                  "m/s, which cuts steps to .* s where .* allow .* s; is there a floor under it\\?"));
+  const Json::Value log = read_json(path("out/run.json"));
+  ASSERT_EQ(log["warnings"].size(), 1u);
+  EXPECT_GT(log["frames"][19]["steps"].asInt(), 4 * log["frames"][0]["steps"].asInt());
+  EXPECT_THAT(repose(words).err, ::testing::Not(HasSubstr("warning"))) << "with a floor all is well";
+}
+
 TEST_F(CommandRun, Json_IsOneLinePerFrame) {
   const Finished run = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--json"});
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 3);
@@ -137,6 +207,20 @@ TEST_F(CommandRun, SceneBesideTheRun_RunsToTheSameHash) {
   ASSERT_EQ(repose({"run", path("a/scene.json"), "--out", path("b"), "--frames", "2"}).code, 0);
   EXPECT_EQ(hash_of_last_frame(path("a")), hash_of_last_frame(path("b")));
   EXPECT_EQ(read_json(path("a/run.json"))["scene"]["hash"], read_json(path("b/run.json"))["scene"]["hash"]);
+}
+
+TEST_F(CommandRun, ResumedWithMoreFramesAndOtherOutput_GoesOn) {
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("whole"), "--frames", "4", "--quiet"}).code, 0);
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("out"), "--set", "time.frames=2", "--quiet"}).code, 0);
+  const Finished more = repose({"run", tiny_scene(R"(, "camera": {"eye": [2, 2, 2]})"), "--out", path("out"),
+                                "--set", "time.frames=4", "--set", "output.ply=true", "--resume", "--quiet"});
+  ASSERT_EQ(more.code, 0) << more.err;
+  EXPECT_EQ(read_json(path("out/run.json"))["frames"].size(), 4u);
+  EXPECT_EQ(hash_of_last_frame(path("out")), hash_of_last_frame(path("whole")));
+  EXPECT_EQ(files_with(path("out"), ".ply"), 2u);
+  const Finished again = repose({"run", tiny_scene(), "--out", path("out"), "--frames", "3", "--resume"});
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.err, HasSubstr("after frame 4, so there is nothing left to do"));
 }
 
 TEST_F(CommandRun, OlderRunInTheFolder_IsNotResumed) {

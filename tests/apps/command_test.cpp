@@ -87,6 +87,21 @@ TEST_F(Command, CheckOfAnAngleThatCannotYield_Warns) {
   EXPECT_THAT(flat.out, Not(HasSubstr("warning")));
 }
 
+TEST_F(Command, CheckOfABodyInsideASolid_WarnsOfEachBody) {
+  // The box reaches four cells into the plane.
+  const Finished sunk = repose({"check", tiny_scene(), "--set", "bodies.box.shape.lower=[0,-0.08,0]"});
+  EXPECT_EQ(sunk.code, 0);
+  EXPECT_THAT(sunk.out,
+              ::testing::ContainsRegex("warning: bodies.box: [0-9]+ of 2000 particles start inside solids, "
+                                       "the deepest 4 cells \\(0.08 m\\) inside "
+                                       "colliders.ground"));
+  const std::size_t at = sunk.out.find("bodies.box: ") + 12;
+  EXPECT_NEAR(std::atof(sunk.out.c_str() + at), 700.0, 20.0)
+      << "7 of 20 half cells are deeper than half a cell";
+  const Finished touching = repose({"check", tiny_scene(), "--set", "bodies.box.shape.lower=[0,-0.009,0]"});
+  EXPECT_THAT(touching.out, Not(HasSubstr("warning"))) << "less than half a cell is a matter of sampling";
+}
+
 TEST_F(Command, CheckOfEveryScene_Good) {
   for (const auto& entry : std::filesystem::directory_iterator(REPOSE_SCENES)) {
     if (entry.path().extension() != ".json") continue;
@@ -109,6 +124,33 @@ TEST_F(Command, Info_TellsOfRunPointsAndCheckpoint) {
   EXPECT_THAT(info.out, HasSubstr("1000 points, spacing 0.02 m"));
   EXPECT_THAT(info.out, HasSubstr("attributes P v id pscale"));
   EXPECT_THAT(info.out, HasSubstr("checkpoint after frame 2"));
+}
+
+TEST_F(Command, InfoOfPoints_IsTheSameForEveryFormat) {
+  const std::string out = path("out");
+  ASSERT_EQ(
+      repose({"run", tiny_scene(R"(, "output": {"ply": true, "vtp": true})"), "--out", out, "--frames", "1"})
+          .code,
+      0);
+  const auto lines = [&](const std::string& ending) {
+    const Finished info = repose({"info", out + "/tiny.points.0001." + ending});
+    EXPECT_EQ(info.code, 0) << info.err;
+    EXPECT_THAT(info.out, HasSubstr(": 1000 points"));
+    return info.out.substr(info.out.find("  fastest"));
+  };
+  EXPECT_THAT(lines("vtp"), HasSubstr("attributes P v id pscale"));
+  EXPECT_EQ(lines("vtp"), lines("ply"));
+  EXPECT_EQ(lines("vtp"), lines("vdb"));
+}
+
+TEST_F(Command, InfoOfAllInAFolder_TellsWhatItCan) {
+  const std::string out = path("out");
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", out, "--frames", "1"}).code, 0);
+  const Finished info = repose({"info", out + "/run.json", out + "/scene.json", out + "/tiny.points.0001.vdb"});
+  EXPECT_EQ(info.code, 64) << "of the scene, which is no file of particles";
+  EXPECT_THAT(info.err, HasSubstr(out + "/scene.json: is not what info can read"));
+  EXPECT_THAT(info.out, HasSubstr("run of tiny by Repose"));
+  EXPECT_THAT(info.out, HasSubstr("1000 points"));
 }
 
 TEST_F(Command, InfoOfARunIntoASolid_TellsTheDeepest) {

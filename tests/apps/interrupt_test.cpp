@@ -88,12 +88,17 @@ TEST_F(Runs, InterruptedWithinFrames_EndWithTheSameBits) {
   const Json::Value whole = read_json(path("whole/run.json"))["frames"],
                     parts = read_json(path("parts/run.json"))["frames"];
   ASSERT_EQ(parts.size(), 8u);
-  int cut = 0;  // the row of a frame that was cut tells of its last part
+  int cut = 0;
   for (Json::ArrayIndex k = 0; k < 8; ++k) {
     EXPECT_EQ(parts[k]["hash"], whole[k]["hash"]) << "frame " << k + 1;
-    cut += parts[k]["steps"].asInt() < whole[k]["steps"].asInt() ? 1 : 0;
+    const bool part = parts[k]["steps"].asInt() < whole[k]["steps"].asInt();
+    EXPECT_EQ(parts[k]["resumed"].asBool(), part) << "a row that tells of a part of its frame says so";
+    EXPECT_FALSE(whole[k].isMember("resumed"));
+    cut += part ? 1 : 0;
   }
   EXPECT_GE(cut, 1) << "no signal came within a frame, so nothing was tested";
+  EXPECT_THAT(repose({"info", path("parts")}).out,
+              HasSubstr("resumed within " + std::to_string(cut) + " of them"));
 }
 
 TEST_F(Runs, Resumed_PassesADamagedCheckpoint) {

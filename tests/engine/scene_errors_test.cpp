@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/scene/compiler.h"
 #include "engine/scene/reader.h"
 
 namespace repose {
@@ -321,6 +322,19 @@ TEST(SceneErrors, TruncatedAndMangled_NeverThrows) {
       EXPECT_TRUE(text.empty() || text.starts_with("s.json:")) << text;
     }
   }
+}
+
+TEST(SceneErrors, MoreMemoryThanAllowed_NamesPlaceAndUnitsThatSaySomething) {
+  const Result<Scene> scene = read_scene_text(kGood, "s.json", ".");
+  ASSERT_TRUE(scene) << scene.error().text();
+  // 4/3 pi r^3 of 8 particles in a cell of 1e-3 m^3.
+  const auto compiled = compile_scene<float>(*scene, {.memory_limit = 1.0e5});
+  ASSERT_FALSE(compiled);
+  EXPECT_EQ(compiled.error().kind, ErrorKind::kMemory);
+  EXPECT_EQ(compiled.error().where, "s.json:4:23: grid.spacing");
+  EXPECT_NE(compiled.error().message.find(" MB for 3.35e+04 particles, and 100 kB may be used"),
+            std::string::npos)
+      << compiled.error().message;
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <locale>
 #include <numbers>
 
+#include "engine/scene/identity.h"
+
 namespace repose {
 namespace {
 
@@ -200,6 +202,81 @@ TEST(SceneReader, File_FolderIsWhereItLies) {
   std::filesystem::remove(path);
   ASSERT_TRUE(scene) << scene.error().text();
   EXPECT_EQ(scene->folder, path.parent_path().string());
+}
+
+Scene read_at(Quality quality, const std::string& text, std::vector<std::string> overrides = {}) {
+  const Result<Scene> scene =
+      read_scene_text(text, "s.json", ".", {.overrides = std::move(overrides), .quality = quality});
+  EXPECT_TRUE(scene) << scene.error().text();
+  return scene ? *scene : Scene{};
+}
+
+TEST(SceneReader, DraftQuality_DoublesTheSpacingAndNothingElse) {
+  const Scene draft = read_at(Quality::kDraft, kSmall);
+  EXPECT_EQ(draft.grid.spacing, 0.2);
+  EXPECT_EQ(draft.canonical, read(kSmall, {"grid.spacing=0.2"}).canonical);
+}
+
+TEST(SceneReader, ReferenceQuality_HalvesTheLimitsOfTheStep) {
+  const TimeDescription standard;
+  const Scene scene = read_at(Quality::kReference, kSmall, {"time.frames=3"});
+  EXPECT_EQ(scene.time.cfl, 0.5 * standard.cfl);
+  EXPECT_EQ(scene.time.sound, 0.5 * standard.sound);
+  EXPECT_EQ(scene.time.isolated, 0.5 * standard.isolated);
+  EXPECT_EQ(scene.time.strain, 0.5 * standard.strain);
+  EXPECT_EQ(scene.time.frames, 3);
+  EXPECT_EQ(scene.grid.spacing, 0.1);
+  EXPECT_EQ(read_at(Quality::kReference, kSmall, {"time={\"cfl\": 0.4}"}).time.cfl, 0.4) << "--set wins";
+}
+
+TEST(SceneReader, StandardQuality_IsTheSceneAsWritten) {
+  EXPECT_EQ(read_at(Quality::kStandard, kWhole).canonical, read(kWhole).canonical);
+}
+
+TEST(SceneReader, QualityOfAnExpression_FollowsTheOverridesOfItsParameters) {
+  std::string text = kSmall;
+  text.replace(text.find("0.1"), 3, R"("= dx + 0.05")");
+  text.insert(1, R"("parameters": {"dx": 0.05}, )");
+  EXPECT_NEAR(read_at(Quality::kDraft, text).grid.spacing, 0.2, 1e-15);
+  EXPECT_NEAR(read_at(Quality::kDraft, text, {"parameters.dx=0.1"}).grid.spacing, 0.3, 1e-15);
+  EXPECT_EQ(read_at(Quality::kDraft, text, {"grid.spacing=0.1"}).grid.spacing, 0.1) << "--set wins";
+}
+
+TEST(SceneReader, QualityOfAWrongScene_LeavesTheComplaintToTheReader) {
+  for (const char* grid : {R"("grid": 3)", R"("grid": {"spacing": "fine"})", R"("grid": {})", R"("up": "y")"}) {
+    std::string text = kSmall;
+    text.replace(text.find(R"("grid")"), std::string(R"("grid": {"spacing": 0.1})").size(), grid);
+    const Result<Scene> draft =
+        read_scene_text(text, "s.json", ".", {.overrides = {}, .quality = Quality::kDraft});
+    const Result<Scene> standard = read_scene_text(text, "s.json", ".");
+    ASSERT_FALSE(draft) << grid;
+    EXPECT_EQ(draft.error().text(), standard.error().text());
+  }
+  const Result<Scene> time =
+      read_scene_text(kSmall, "s.json", ".", {.overrides = {"time.cfl=7"}, .quality = Quality::kReference});
+  EXPECT_EQ(time.error().where, "--set time.cfl=7: time.cfl");
+}
+
+TEST(SceneReader, Identity_IsAllThatAStateDependsOn) {
+  const std::string plain = read(kSmall).identity;
+  EXPECT_EQ(read(kSmall, {"time.frames=7", "output.vtp=true", "camera.eye=[1,2,3]"}).identity, plain);
+  EXPECT_EQ(read(kSmall, {"time={}"}).identity, plain);
+  for (const char* other : {"time.cfl=0.3", "bodies.heap.seed=2", "name=other", "gravity.ramp=1"}) {
+    EXPECT_NE(read(kSmall, {other}).identity, plain) << other;
+  }
+}
+
+TEST(SceneReader, FirstDifference_NamesTheKeyAndBothValues) {
+  const auto difference = [](const std::string& before, const std::string& now) {
+    return first_difference(read(kWhole, {before}).canonical, read(kWhole, {now}).canonical);
+  };
+  EXPECT_EQ(difference("bodies.heap.seed=5", "bodies.heap.seed=6"), "bodies.heap.seed was 5 and is 6 now");
+  EXPECT_EQ(difference("time.cfl=0.1", "time.cfl=0.30000000000000004"),
+            "time.cfl was 0.1 and is 0.30000000000000004 now");
+  EXPECT_EQ(difference("parameters.a=0.25", "parameters.a=0.5"), "parameters.a was 0.25 and is 0.5 now")
+      << "not the radius that follows from it";
+  EXPECT_EQ(difference("time.frames=7", "time.frames=8"), "");
+  EXPECT_EQ(first_difference("{", kWhole), "");
 }
 
 }  // namespace

@@ -109,6 +109,40 @@ TEST_F(PointFiles, Vdb_RoundTrip_KeepsEverything) {
   expect_same(points, *back, points.spacing / 65535.0 * 1.01);
 }
 
+TEST_F(PointFiles, Vtp_RoundTrip_KeepsAllButTheSpacing) {
+  for (const double far : {0.0, 1.0e5}) {  // near as float, far as double
+    PointCloud points = make_cloud(2000, {far, 0, -far});
+    ASSERT_TRUE(write_vtp(points, path("a.vtp")));
+    const Result<PointCloud> back = read_vtp(path("a.vtp"));
+    ASSERT_TRUE(back) << back.error().text();
+    EXPECT_EQ(back->spacing, 0.0);
+    points.spacing = 0.0;
+    expect_same(points, *back, far > 0.0 ? 0.0 : 1e-7);
+  }
+}
+
+TEST_F(PointFiles, VtpThatIsDamagedOrForeign_IsRefused) {
+  EXPECT_EQ(read_vtp(path("none.vtp")).error().kind, ErrorKind::kNoInput);
+  ASSERT_TRUE(write_vtp(make_cloud(200), path("a.vtp")));
+  const std::string good = bytes_of(path("a.vtp"));
+  const std::size_t data = good.find("\n_") + 2, verts = good.find("</VTKFile>") - 200 * 16 - 64;
+  for (std::size_t size = 0; size < verts; size += size < data ? 50 : 1999) {
+    put_bytes(path("cut.vtp"), good.substr(0, size));
+    const Result<PointCloud> cut = read_vtp(path("cut.vtp"));
+    ASSERT_FALSE(cut) << size;
+    EXPECT_EQ(cut.error().kind, ErrorKind::kIo);
+    EXPECT_EQ(cut.error().where, path("cut.vtp"));
+  }
+  std::string huge = good;
+  for (std::size_t k = 0; k < 8; ++k) huge[data + k] = '\xff';  // the size of the first array
+  put_bytes(path("huge.vtp"), huge);
+  EXPECT_NE(read_vtp(path("huge.vtp")).error().message.find("array 'v' is cut short"), std::string::npos);
+  std::string ascii = good;
+  ascii.replace(ascii.find("encoding=\"raw\""), 14, "encoding=\"b64\"");
+  put_bytes(path("b64.vtp"), ascii);
+  EXPECT_NE(read_vtp(path("b64.vtp")).error().message.find("as Repose writes it"), std::string::npos);
+}
+
 TEST_F(PointFiles, Vdb_TenKilometresAway_PositionsAsExact) {
   const PointCloud points = make_cloud(2000, {10000.0, -10000.0, 3.0});
   ASSERT_TRUE(write_vdb_points(points, path("a.vdb")));

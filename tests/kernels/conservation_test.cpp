@@ -1,5 +1,5 @@
 // Repose tests: particles to nodes and back the whole way that a step goes, through arena and blocks: mass,
-// momentum and the angular momentum of APIC are kept (hard case 15).
+// momentum and the angular momentum of APIC are kept.
 #include <gtest/gtest.h>
 
 #include "tests/kernels/node_blocks.h"

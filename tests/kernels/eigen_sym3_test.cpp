@@ -1,5 +1,5 @@
 // Repose tests: the eigen decomposition keeps 16 eps of values, orthogonality and reconstruction, against Eigen
-// in long double, for every scale and for equal and missing values (hard cases 1 to 5, for a symmetric matrix).
+// in long double, for every scale and for equal and missing values.
 #include <gtest/gtest.h>
 
 #include "tests/kernels/exact_matrix.h"

@@ -224,7 +224,7 @@ TYPED_TEST(EveryMaterial, Stress_HasAnEnergy) {
   }
 }
 
-/// Hard case 12, of the Hencky energy psi = mu eps : eps + (lambda/2) tr(eps)^2.
+/// Stress is the slope of an energy, here of the Hencky energy psi = mu eps : eps + (lambda/2) tr(eps)^2.
 template <class Material, class Parameters>
 void expect_slope_of_hencky_energy(const Parameters& parameters, const Elasticity& elasticity) {
   const long double mu = elasticity.mu(), lambda = elasticity.lambda();

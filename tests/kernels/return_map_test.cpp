@@ -1,5 +1,6 @@
 // Repose tests: what the return map of sand must be for any strain: on the cone or inside it, idempotent, of
-// the same volume, dissipating, continuous at the tip (hard cases 6 to 8, 10, 12).
+// the same volume, dissipating, continuous at the tip. Strains span six decades and lie within an ulp of the
+// tip, where cancellation would show.
 #include "tests/kernels/material_probe.h"
 
 namespace repose {
@@ -43,7 +44,7 @@ std::vector<DruckerPragerParameters> sands() {
   return all;
 }
 
-/// Hard case 6. The overshoot is that of the strain, y / (2 mu).
+/// Strains of one decade about the yield surface. The overshoot is that of the strain, y / (2 mu).
 TYPED_TEST(ReturnMap, Project_StretchesOneDecade_OnTheConeAndIdempotent) {
   const auto strains = random_strains<TypeParam>(20011, 1.0, 51);
   const DruckerPragerParameters sand = golden_sand();
@@ -62,7 +63,7 @@ TYPED_TEST(ReturnMap, Project_StretchesOneDecade_OnTheConeAndIdempotent) {
   }
 }
 
-/// Hard case 7.
+/// Strains far beyond what a step can make: six decades of stretch.
 TYPED_TEST(ReturnMap, Project_StretchesSixDecades_FiniteAndCloseToTheCone) {
   const auto strains = random_strains<TypeParam>(20011, 6.0, 52);
   const double bound = sizeof(TypeParam) == 4 ? 1e-4 : 1e-7;
@@ -129,7 +130,7 @@ TYPED_TEST(ReturnMap, Project_AnyStrain_PlasticWorkIsNotNegative) {
   }
 }
 
-/// Hard case 8: within an ulp of the tip there is no stress and no jump.
+/// Within an ulp of the tip there is no stress and no jump.
 TYPED_TEST(ReturnMap, Project_AtTheTip_IsContinuous) {
   const TypeParam tiny = std::numeric_limits<TypeParam>::epsilon();
   Samples samples(56);

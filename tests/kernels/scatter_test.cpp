@@ -78,7 +78,7 @@ TYPED_TEST(Scatter, FlatAxis_EveryAxis_MatchesTheReference) {
   }
 }
 
-/// Hard case 37: where a particle changes its nodes, and one number below and above.
+/// Where a particle changes its nodes, and one number below and above.
 TYPED_TEST(Scatter, OnCellFaces_WithinAnUlp_MatchTheReference) {
   std::vector<TypeParam> places;
   for (int face = -1; face <= 5; ++face) {

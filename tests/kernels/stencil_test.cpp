@@ -1,5 +1,5 @@
 // Repose tests: the identities of the quadratic stencil at random places and within an ulp of the faces where a
-// particle changes its nodes (hard case 14).
+// particle changes its nodes.
 #include "kernels/layout/stencil.h"
 
 #include <gtest/gtest.h>

@@ -71,7 +71,7 @@ TYPED_TEST(VolumeCorrection, AnyStrain_KeepsTheSumOfTraceAndGain) {
   }
 }
 
-/// Hard case 13 on one particle: pulled open and pressed shut again and again, no volume stays gained.
+/// One particle: pulled open and pressed shut again and again, no volume stays gained.
 TYPED_TEST(VolumeCorrection, TenThousandCycles_GainNoVolume) {
   for (const Target target : supported_targets()) {
     std::vector<Symmetric<TypeParam>> strains{

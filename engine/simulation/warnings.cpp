@@ -1,0 +1,159 @@
+#include "engine/simulation/warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "engine/simulation/diagnostics.h"
+#include "engine/step/time_step.h"
+
+namespace repose {
+namespace {
+
+/// Particles are seeded up to a surface that they touch, and a mesh errs by a tenth of a cell.
+constexpr double kToleratedCells = 0.5;
+
+constexpr double kShareWorthAWord = 0.25;
+
+struct Inside {
+  std::uint64_t count = 0;
+  double depth = 0.0;  // m
+  const Solid* solid = nullptr;
+};
+
+template <class Real>
+Vec3 position_of(const State<Real>& state, const ParticleSet<Real>& set, const Index3& block, std::size_t p) {
+  return state.world(block,
+                     {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
+}
+
+template <class Real>
+Index3 block_of(const State<Real>& state, std::size_t owner) {
+  return state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+}
+
+template <class Real>
+Inside inside_block(const std::vector<Solid>& solids, const State<Real>& state, const ParticleSet<Real>& set,
+                    std::size_t owner) {
+  Inside inside;
+  const Index3 block = block_of(state, owner);
+  const Vec3 middle = state.world(block, {2.0, 2.0, 2.0});
+  const bool near = std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
+    return solid.distance(middle) < block_radius(state.spacing);
+  });
+  if (!near) return inside;
+  const double tolerated = kToleratedCells * state.spacing;
+  for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+    const Vec3 x = position_of(state, set, block, p);
+    double deepest = tolerated;
+    for (const Solid& solid : solids) {
+      const double depth = -solid.distance(x);
+      deepest = std::max(deepest, depth);
+      if (depth <= std::max(tolerated, inside.depth)) continue;
+      inside.depth = depth;
+      inside.solid = &solid;
+    }
+    inside.count += deepest > tolerated ? 1 : 0;
+  }
+  return inside;
+}
+
+template <class Real>
+std::string inside_text(const ParticleSet<Real>& set, const Inside& inside, double spacing) {
+  char figures[128];
+  std::snprintf(figures, sizeof figures,
+                "%llu of %zu particles start inside solids, the deepest %.3g cells (%.3g m)",
+                static_cast<unsigned long long>(inside.count), set.count, inside.depth / spacing, inside.depth);
+  return "bodies." + set.name + ": " + figures + " inside colliders." + inside.solid->name +
+         "; solids do not push out what starts within them, so move one of the two";
+}
+
+template <class Real>
+struct Fastest {
+  const ParticleSet<Real>* set = nullptr;
+  std::size_t owner = 0, particle = 0;
+  double speed = -1.0;  // m/s
+};
+
+template <class Real>
+Fastest<Real> find_fastest(const State<Real>& state) {
+  Fastest<Real> fastest;
+  for (const auto& set : state.sets) {
+    for (std::size_t owner = 0; owner + 1 < set.begin.size(); ++owner) {
+      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+        const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
+        if (v.norm() > fastest.speed) fastest = {&set, owner, p, v.norm()};
+      }
+    }
+  }
+  return fastest;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Scene& scene) {
+  std::vector<std::string> warnings;
+  for (const MaterialDescription& material : scene.materials) {
+    const auto* sand = std::get_if<DruckerPragerParameters>(&material.parameters);
+    if (sand == nullptr || 3.0 * sand->cone_slope() / std::sqrt(2.0) < 1.0) continue;
+    char angle[32];
+    std::snprintf(angle, sizeof angle, "%g", sand->friction_angle);
+    warnings.push_back("materials." + material.name + ": with friction_angle " + angle +
+                       " and this cone_matching the sand can never yield in plane strain; see docs/math.md on "
+                       "cone matching");
+  }
+  return warnings;
+}
+
+template <class Real>
+std::vector<std::string> seeding_warnings(const std::vector<Solid>& solids, const State<Real>& state,
+                                          Threads& threads) {
+  std::vector<std::string> warnings;
+  if (solids.empty()) return warnings;
+  std::vector<Inside> blocks(state.grid.owners().size());
+  for (const auto& set : state.sets) {
+    threads.for_each(blocks.size(),
+                     [&](std::size_t owner) { blocks[owner] = inside_block(solids, state, set, owner); });
+    Inside all;
+    for (const Inside& block : blocks) {
+      all.count += block.count;
+      if (block.depth <= all.depth) continue;
+      all.depth = block.depth;
+      all.solid = block.solid;
+    }
+    if (all.count > 0) warnings.push_back(inside_text(set, all, state.spacing));
+  }
+  return warnings;
+}
+
+template <class Real>
+std::optional<std::string> speed_warning(const StepPlan<Real>& plan, const State<Real>& state) {
+  const double whole = std::numeric_limits<double>::infinity();
+  const auto next = [&](const Counters& counters) {
+    return choose_step(plan.limits, plan.transfer, state.spacing, counters, whole);
+  };
+  const StepSize cut = next(state.counters);
+  if (cut.limit != Limit::kVelocity) return std::nullopt;
+  Counters calm = state.counters;
+  calm.max_speed = 0.0;
+  const double allowed = next(calm).dt;
+  if (cut.dt >= kShareWorthAWord * allowed) return std::nullopt;
+  const Fastest<Real> fastest = find_fastest(state);
+  if (fastest.set == nullptr) return std::nullopt;
+  const Vec3 x = position_of(state, *fastest.set, block_of(state, fastest.owner), fastest.particle);
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "' at (%.4g, %.4g, %.4g) m moves at %.3g m/s, which cuts steps to %.3g s where all limits but that of "
+      "velocity (time.cfl) would allow %.3g s; is there a floor under it?",
+      x[0], x[1], x[2], fastest.speed, cut.dt, allowed);
+  return "particle " + std::to_string(fastest.set->id[fastest.particle]) + " of '" + fastest.set->name + text;
+}
+
+template std::vector<std::string> seeding_warnings(const std::vector<Solid>&, const State<float>&, Threads&);
+template std::vector<std::string> seeding_warnings(const std::vector<Solid>&, const State<double>&, Threads&);
+template std::optional<std::string> speed_warning(const StepPlan<float>&, const State<float>&);
+template std::optional<std::string> speed_warning(const StepPlan<double>&, const State<double>&);
+
+}  // namespace repose
