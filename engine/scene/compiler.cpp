@@ -133,7 +133,7 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     next_id += static_cast<std::uint32_t>(set.count);
     state.sets.push_back(std::move(set));
   }
-  place_in_blocks(state, cells, transfer_constants(scene).base_shift);
+  place_in_blocks(state, cells, {transfer_constants(scene).base_shift});
   return {};
 }
 
@@ -255,7 +255,7 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
 std::size_t bytes_per_particle(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
   std::size_t bytes = real * (3 + 3 + kAffineComponents + kStrainComponents) + sizeof(std::uint32_t);
-  bytes += real + sizeof(std::uint32_t) * 3;  // ordering: one channel, one id, permutation and groups
+  bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
   for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
   return bytes;
 }

@@ -109,9 +109,14 @@ void BlockGrid::build(std::span<const Index3> owners, const Topology& topology) 
   }
 }
 
-std::int32_t BlockGrid::find_owner(const Index3& block) const {
+std::int32_t BlockGrid::find_block(const Index3& block) const {
   const Leaf* leaf = tree_->mask.probeConstLeaf(first_node(block));
-  return leaf == nullptr ? -1 : owner_of_block_[leaf->transientData()];
+  return leaf == nullptr ? -1 : static_cast<std::int32_t>(leaf->transientData());
+}
+
+std::int32_t BlockGrid::find_owner(const Index3& block) const {
+  const std::int32_t found = find_block(block);
+  return found < 0 ? -1 : owner_of_block_[static_cast<std::size_t>(found)];
 }
 
 std::uint64_t BlockGrid::active_nodes() const {

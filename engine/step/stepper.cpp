@@ -48,7 +48,7 @@ void Stepper<Real>::order_if_due(State<Real>& state) {
   const bool wasteful = counters.runs_wasted * kCostOfRun > particles * kCostOfOrder;
   if (counters.order_due == 0 && !wasteful) return;
   const PhaseTimer timer(profile_, Phase::kOrder);
-  order_.order(state, threads_, plan_.transfer.base_shift);
+  order_.order(state, threads_, {plan_.transfer.base_shift});
   for (const auto& pass : plan_.order) pass.run(state);
 }
 
