@@ -76,14 +76,12 @@ void BlockGrid::build(std::span<const Index3> owners, const Topology& topology) 
                          [&](int, const Index3& block) { accessor.touchLeaf(first_node(block)); });
     }
   }
-  std::vector<Leaf*> leaves;
-  mask.getNodes(leaves);
-  blocks_.resize(leaves.size());
-  active_.resize(leaves.size());
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    blocks_[i] = block_of(leaves[i]->origin());
-    leaves[i]->setTransientData(static_cast<openvdb::Index32>(i));
-    active_[i] = mask_word(*leaves[i]);
+  blocks_.clear();
+  active_.clear();
+  for (auto leaf = mask.beginLeaf(); leaf; ++leaf) {
+    leaf->setTransientData(static_cast<openvdb::Index32>(blocks_.size()));
+    blocks_.push_back(block_of(leaf->origin()));
+    active_.push_back(mask_word(*leaf));
   }
 
   const openvdb::tree::ValueAccessor<const MaskTree> accessor(mask);

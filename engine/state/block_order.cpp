@@ -144,7 +144,7 @@ bool BlockOrder<Real>::update_grid(State<Real>& state) {
   }
   source_.assign(state.grid.size(), -1);
   for (std::size_t owner = 0; owner < owners; ++owner) {
-    const std::int32_t block = state.grid.find_block(old_blocks_[owner]);
+    const std::int32_t block = same ? state.grid.owners()[owner] : state.grid.find_block(old_blocks_[owner]);
     if (block >= 0) source_[static_cast<std::size_t>(block)] = static_cast<std::int32_t>(owner);
   }
   return !same;
