@@ -74,9 +74,8 @@ class BlockOrder {
 };
 
 /// Puts freshly seeded particles, whose channels are filled in id order and whose positions are in cells from
-/// the scene lattice's origin in `cell`, into blocks. The state must then be ordered.
+/// the scene lattice's origin in `cells`, into blocks. The state must then be ordered. `cells` is used up.
 template <class Real>
-void place_in_blocks(State<Real>& state, const std::vector<std::vector<Index3>>& cells,
-                     const Ownership& ownership);
+void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells, const Ownership& ownership);
 
 }  // namespace repose
