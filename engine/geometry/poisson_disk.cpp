@@ -195,7 +195,7 @@ Result<Seeds> seed_poisson_disk(const Shape& shape, const CellBox& box, const Se
       offset[k] = p[k] - whole;
     }
     seeds.cell.push_back(cell);
-    seeds.offset.push_back(offset);
+    seeds.offset.push_back(to_float(offset));
   }
   return seeds;
 }

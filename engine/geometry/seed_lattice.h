@@ -15,6 +15,11 @@ namespace repose {
 constexpr std::int64_t kLattice = std::int64_t{1} << 20;
 constexpr double kLatticeStep = 1.0 / static_cast<double>(kLattice);
 
+/// Exact for an offset on the lattice.
+inline std::array<float, 3> to_float(const std::array<double, 3>& offset) {
+  return {static_cast<float>(offset[0]), static_cast<float>(offset[1]), static_cast<float>(offset[2])};
+}
+
 /// One step of SplitMix64 (Steele, Lea and Flood 2014): a bijection that leaves no pattern of its argument.
 inline std::uint64_t mix(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;

@@ -60,8 +60,12 @@ std::array<double, 3> place_in_cell(const CellBox& box, const std::array<std::in
   return offset;
 }
 
-Seeds seed_jittered(const Shape& shape, const CellBox& box, const SeedOptions& options) {
+/// `expected` particles, as the volume has it: room for them at once, and for what chance adds at the surface.
+Seeds seed_jittered(const Shape& shape, const CellBox& box, const SeedOptions& options, double expected) {
   Seeds seeds;
+  const auto room = static_cast<std::size_t>(1.01 * expected) + 1024;
+  seeds.cell.reserve(room);
+  seeds.offset.reserve(room);
   const auto cuts = sub_cells(options.particles_per_cell, box);
   box.for_each_cell([&](const Index3& cell) {
     const double distance = shape.signed_distance(box.middle(cell));
@@ -73,7 +77,7 @@ Seeds seed_jittered(const Shape& shape, const CellBox& box, const SeedOptions& o
       const auto offset = place_in_cell(box, cuts, sub, mix(key + static_cast<std::uint64_t>(s)));
       if (!whole && !(shape.signed_distance(box.position(cell, offset)) < 0)) continue;
       seeds.cell.push_back(cell);
-      seeds.offset.push_back(offset);
+      seeds.offset.push_back(to_float(offset));
     }
   });
   return seeds;
@@ -129,8 +133,9 @@ Result<Seeds> seed_checked(const Shape& shape, const SeedOptions& options) {
   if (!(expected < kMostParticles)) {
     return refuse("the shape would hold " + std::to_string(expected) + " particles; at most 2^32 - 1 have ids");
   }
-  auto seeds = options.sampling == Sampling::kJittered ? Result<Seeds>(seed_jittered(shape, *box, options))
-                                                       : seed_poisson_disk(shape, *box, options);
+  auto seeds = options.sampling == Sampling::kJittered
+                   ? Result<Seeds>(seed_jittered(shape, *box, options, expected))
+                   : seed_poisson_disk(shape, *box, options);
   if (!seeds) return seeds;
   if (seeds->cell.empty()) {
     return refuse("the shape holds no particle; use a finer grid or more particles per cell");

@@ -30,7 +30,7 @@ struct SeedOptions {
 /// (x, then y, then z). Offsets are whole multiples of 2^-20, the same number in float as in double.
 struct Seeds {
   std::vector<Index3> cell;
-  std::vector<std::array<double, 3>> offset;
+  std::vector<std::array<float, 3>> offset;
   double particle_volume = 0.0;  ///< V0 = V/N in m^3, so that the sum is the shape's volume exactly
 };
 

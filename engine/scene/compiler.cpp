@@ -58,21 +58,22 @@ MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const Material
 
 /// Fills a set with the seeds of a body: rest, but for the body's motion.
 template <class Real>
-void fill_set(const Scene& scene, const BodyDescription& body, const Vec3& center, const Seeds& seeds,
+void fill_set(const Scene& scene, const BodyDescription& body, const Vec3& center, Seeds seeds,
               std::uint32_t first_id, ParticleSet<Real>& set, std::vector<Index3>& cells) {
   set.name = body.name;
   set.particle_volume = seeds.particle_volume;
   set.particle_mass = seeds.particle_volume * material_of(scene, set.material).elasticity().density;
   set.allocate(seeds.cell.size());
-  cells.resize(set.count);
+  cells = std::move(seeds.cell);  // not copied: seeds are the peak of memory
   const Vec3& w = body.angular_velocity;
   const double spin[9] = {0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0};
   for (std::size_t p = 0; p < set.count; ++p) {
     Vec3 x;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      cells[p][axis] = seeds.cell[p][axis] + static_cast<std::int32_t>(scene.grid.origin_cells[axis]);
-      set.position[axis][p] = static_cast<Real>(seeds.offset[p][axis]);
-      x[static_cast<int>(axis)] = (seeds.cell[p][axis] + seeds.offset[p][axis]) * scene.grid.spacing;
+      const double offset = seeds.offset[p][axis];
+      set.position[axis][p] = static_cast<Real>(offset);
+      x[static_cast<int>(axis)] = (cells[p][axis] + offset) * scene.grid.spacing;
+      cells[p][axis] += static_cast<std::int32_t>(scene.grid.origin_cells[axis]);
     }
     const Vec3 v = body.velocity + w.cross(x - center);
     for (int axis = 0; axis < 3; ++axis) set.velocity[axis][p] = static_cast<Real>(v[axis]);
@@ -104,7 +105,7 @@ constexpr double kMostParticles = 4.0e9;
 /// Refuses, before anything is allocated, a body that would not fit.
 Result<void> check_memory(const Scene& scene, double particles, double limit) {
   const double bytes =
-      particles * static_cast<double>(bytes_per_particle(scene) + 40);  // 40: seeds, while they last
+      particles * static_cast<double>(bytes_per_particle(scene) + 24);  // 24: seeds, while they last
   if (bytes <= limit && particles < kMostParticles) return {};
   const double allowed = std::min(limit / bytes, kMostParticles / particles);
   char count[64], spacing[64];
@@ -148,11 +149,12 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     for_each_effect(scene.effects, [&](const auto& effect) {
       for (const std::string& channel : effect.channels(yields)) set.extra.push_back({channel, {}});
     });
-    fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), *seeds, next_id, set, cells.emplace_back());
+    fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), std::move(*seeds), next_id, set,
+             cells.emplace_back());
     next_id += static_cast<std::uint32_t>(set.count);
     state.sets.push_back(std::move(set));
   }
-  place_in_blocks(state, cells, transfer_constants(scene).base_shift);
+  place_in_blocks(state, std::move(cells), {transfer_constants(scene).base_shift});
   return {};
 }
 
@@ -276,7 +278,7 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
 std::size_t bytes_per_particle(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
   std::size_t bytes = real * (3 + 3 + kAffineComponents + kStrainComponents) + sizeof(std::uint32_t);
-  bytes += real + sizeof(std::uint32_t) * 3;  // ordering: one channel, one id, permutation and groups
+  bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
   for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
   return bytes;
 }

@@ -34,7 +34,8 @@ struct Diagnostics {
 
 struct MemoryUse {
   std::size_t particle_bytes = 0;  ///< channels
-  std::size_t order_bytes = 0;     ///< scratch and ordering
+  std::size_t order_bytes = 0;     ///< ordering, and the stepper's numbers per block
+  std::size_t scratch_bytes = 0;   ///< of the threads, whatever the scene
   std::size_t grid_bytes = 0;      ///< tree, tables and node fields
   std::size_t blocks = 0;
   std::uint64_t active_nodes = 0;

@@ -67,8 +67,8 @@ class SimulationOf final : public Simulation {
   Diagnostics diagnose() override { return repose::diagnose(scene_, solids_, state_, stepper_.threads()); }
   std::uint64_t hash() const override { return state_hash(state_); }
   MemoryUse memory() const override {
-    return {state_.particle_bytes(), stepper_.bytes(), state_.grid_bytes(), state_.grid.size(),
-            state_.grid.active_nodes()};
+    return {state_.particle_bytes(), stepper_.bytes(),   stepper_.scratch_bytes(),
+            state_.grid_bytes(),     state_.grid.size(), state_.grid.active_nodes()};
   }
   const Profile& profile() const override { return stepper_.profile(); }
   void reset_profile() override { stepper_.reset_profile(); }

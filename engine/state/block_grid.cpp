@@ -76,14 +76,12 @@ void BlockGrid::build(std::span<const Index3> owners, const Topology& topology) 
                          [&](int, const Index3& block) { accessor.touchLeaf(first_node(block)); });
     }
   }
-  std::vector<Leaf*> leaves;
-  mask.getNodes(leaves);
-  blocks_.resize(leaves.size());
-  active_.resize(leaves.size());
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    blocks_[i] = block_of(leaves[i]->origin());
-    leaves[i]->setTransientData(static_cast<openvdb::Index32>(i));
-    active_[i] = mask_word(*leaves[i]);
+  blocks_.clear();
+  active_.clear();
+  for (auto leaf = mask.beginLeaf(); leaf; ++leaf) {
+    leaf->setTransientData(static_cast<openvdb::Index32>(blocks_.size()));
+    blocks_.push_back(block_of(leaf->origin()));
+    active_.push_back(mask_word(*leaf));
   }
 
   const openvdb::tree::ValueAccessor<const MaskTree> accessor(mask);
@@ -109,9 +107,14 @@ void BlockGrid::build(std::span<const Index3> owners, const Topology& topology) 
   }
 }
 
-std::int32_t BlockGrid::find_owner(const Index3& block) const {
+std::int32_t BlockGrid::find_block(const Index3& block) const {
   const Leaf* leaf = tree_->mask.probeConstLeaf(first_node(block));
-  return leaf == nullptr ? -1 : owner_of_block_[leaf->transientData()];
+  return leaf == nullptr ? -1 : static_cast<std::int32_t>(leaf->transientData());
+}
+
+std::int32_t BlockGrid::find_owner(const Index3& block) const {
+  const std::int32_t found = find_block(block);
+  return found < 0 ? -1 : owner_of_block_[static_cast<std::size_t>(found)];
 }
 
 std::uint64_t BlockGrid::active_nodes() const {

@@ -48,6 +48,10 @@ class BlockGrid {
   /// The owners of one of the 8 colours. Two of a colour lie at least two blocks apart along some axis.
   std::span<const std::int32_t> colour(int colour) const { return colours_[static_cast<std::size_t>(colour)]; }
 
+  /// The owner that a block is, or -1.
+  std::int32_t owner_of_block(std::size_t block) const { return owner_of_block_[block]; }
+  /// The position in blocks() of a block coordinate, or -1.
+  std::int32_t find_block(const Index3& block) const;
   /// The owner at a block coordinate, or -1.
   std::int32_t find_owner(const Index3& block) const;
 

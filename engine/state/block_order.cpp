@@ -1,189 +1,302 @@
-// Repose: ordering by a parallel sort in three passes: each old block groups its particles by where they go,
-// each new block collects and sorts what comes to it, then every channel is moved.
+// Repose: ordering by a parallel sort. Each old block finds who leaves it, each new block collects and sorts
+// what comes to it, then every channel is moved through one spare. Most particles stay in their block and,
+// within it, in their cell: coordinates are looked at once, in loops that vectorise, and the blocks that keep
+// their order are copied. The grid is built anew only when a block begins or ceases to hold particles.
 #include "engine/state/block_order.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
+#include <type_traits>
 
 #include "engine/base/result.h"
 
 namespace repose {
 namespace {
 
-/// Base node of a coordinate, in cells from the block's origin; the same operation as in the kernels.
-template <class Real>
-std::int32_t base_node(Real x, double shift) {
-  return static_cast<std::int32_t>(std::floor(x - static_cast<Real>(shift)));
+/// Set in the cell of a particle that leaves its block.
+constexpr std::uint8_t kMoves = 128;
+static_assert(kBases <= kMoves);
+
+constexpr Index3 offset_of(int neighbour) {
+  return {neighbour / 9 - 1, neighbour / 3 % 3 - 1, neighbour % 3 - 1};
 }
 
-/// Blocks that a coordinate lies away from its own: -1, 0 or 1 after an accepted step.
+/// The bases of particles [first, last) in the blocks they come to.
 template <class Real>
-std::int32_t blocks_away(Real x, double shift) {
-  return floor_divide(base_node(x, shift), kBlockSide);
+void locate(const ParticleSet<Real>& set, std::size_t first, std::size_t last, const Locator<Real>& locator,
+            std::uint8_t* cells) {
+  const Real* const x = set.position[0].data();
+  const Real* const y = set.position[1].data();
+  const Real* const z = set.position[2].data();
+  for (std::size_t p = first; p < last; ++p) {
+    const std::int32_t away_x = locator.blocks_away(x[p]), away_y = locator.blocks_away(y[p]),
+                       away_z = locator.blocks_away(z[p]);
+    const std::int32_t base_x = locator.base(x[p]) - away_x * kBlockSide,
+                       base_y = locator.base(y[p]) - away_y * kBlockSide,
+                       base_z = locator.base(z[p]) - away_z * kBlockSide;
+    const std::int32_t cell = (base_x * kBaseSide + base_y) * kBaseSide + base_z;
+    const std::int32_t moves = (away_x | away_y | away_z) != 0 ? kMoves : 0;
+    cells[p] = static_cast<std::uint8_t>(cell | moves);
+  }
 }
 
 template <class Real>
-std::int32_t destination(const ParticleSet<Real>& set, std::size_t p, double shift) {
+std::size_t destination(const ParticleSet<Real>& set, std::size_t p, const Locator<Real>& locator) {
   std::int32_t away[3];
   for (int axis = 0; axis < 3; ++axis) {
-    away[axis] = blocks_away(set.position[axis][p], shift);
+    away[axis] = locator.blocks_away(set.position[axis][p]);
     REPOSE_ASSERT(away[axis] >= -1 && away[axis] <= 1);
   }
-  return neighbour_index(away[0], away[1], away[2]);
+  return static_cast<std::size_t>(neighbour_index(away[0], away[1], away[2]));
 }
 
-template <class Real>
-std::uint32_t cell_in_block(const ParticleSet<Real>& set, std::size_t p, double shift) {
-  std::uint32_t cell = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t base = base_node(set.position[axis][p], shift);
-    cell = cell * kBlockSide + static_cast<std::uint32_t>(base - floor_divide(base, kBlockSide) * kBlockSide);
+/// Whether particles [first, last) ascend by cell and id, and none leaves.
+bool in_order(const std::uint8_t* cells, const std::uint32_t* ids, std::size_t first, std::size_t last) {
+  std::uint32_t wrong = first < last ? cells[first] & kMoves : 0;
+  for (std::size_t p = first + 1; p < last; ++p) {
+    const std::uint32_t descends = cells[p] < cells[p - 1] ? 1 : 0;
+    const std::uint32_t same = cells[p] == cells[p - 1] ? 1 : 0;
+    wrong |= descends | (same & (ids[p] < ids[p - 1] ? 1u : 0u)) | (cells[p] & kMoves);
   }
-  return cell;
-}
-
-Index3 offset_of(int neighbour) {
-  return {neighbour / 9 - 1, neighbour / 3 % 3 - 1, neighbour % 3 - 1};
+  return wrong == 0;
 }
 
 }  // namespace
 
 template <class Real>
-void BlockOrder<Real>::group_by_destination(const ParticleSet<Real>& set, std::size_t owner, double shift,
-                                            Departures& departures) {
+void BlockOrder<Real>::classify(const ParticleSet<Real>& set, std::size_t owner, const Locator<Real>& locator,
+                                Buffers& buffers) const {
+  const std::size_t first = set.begin[owner], last = set.begin[owner + 1];
+  std::uint8_t* const cells = buffers.cell.data();
+  locate(set, first, last, locator, cells);
+  OldOwner& old = buffers.old[owner];
+  Departures& departures = old.departures;
   departures.fill(0);
-  const std::size_t begin = set.begin[owner], end = set.begin[owner + 1];
-  for (std::size_t p = begin; p < end; ++p)
-    ++departures[static_cast<std::size_t>(destination(set, p, shift)) + 1];
-  for (std::size_t k = 1; k <= kNeighbours; ++k) departures[k] += departures[k - 1];
+  old.in_order = in_order(cells, set.id.data(), first, last);
+  if (old.in_order) return;
+  for (std::size_t p = first; p < last; ++p) {
+    if (cells[p] >= kMoves) ++departures[destination(set, p, locator) + 1];
+  }
+  for (std::size_t n = 1; n <= kNeighbours; ++n) departures[n] += departures[n - 1];
+  if (departures[kNeighbours] == 0) return;
   std::array<std::uint32_t, kNeighbours> next;
   std::copy_n(departures.begin(), kNeighbours, next.begin());
-  for (std::size_t p = begin; p < end; ++p) {
-    grouped_[begin + next[static_cast<std::size_t>(destination(set, p, shift))]++] =
-        static_cast<std::uint32_t>(p);
+  std::uint32_t* const movers = buffers.movers() + first;
+  for (std::size_t p = first; p < last; ++p) {
+    if (cells[p] >= kMoves) movers[next[destination(set, p, locator)]++] = static_cast<std::uint32_t>(p);
   }
 }
 
-/// Calls visit(first, last) for each stretch of grouped_ whose particles of set k come to a new owner.
+/// Whether the blocks that hold particles are those that held some before. Few blocks lose particles to others,
+/// so this is not worth threads.
+template <class Real>
+bool BlockOrder<Real>::same_owners(const State<Real>& state) {
+  const std::size_t owners = state.grid.owners().size();
+  weight_.assign(owners, 0);
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    for (std::size_t owner = 0; owner < owners; ++owner) {
+      const Departures& departures = buffers_[k].old[owner].departures;
+      const auto& begin = state.sets[k].begin;
+      weight_[owner] += begin[owner + 1] - begin[owner] - departures[kNeighbours];
+      if (departures[kNeighbours] == 0) continue;
+      const auto neighbours = state.grid.neighbours(owner);
+      for (std::size_t n = 0; n < kNeighbours; ++n) {
+        if (departures[n] == departures[n + 1]) continue;
+        const std::int32_t target =
+            neighbours[n] < 0 ? -1 : state.grid.owner_of_block(static_cast<std::size_t>(neighbours[n]));
+        if (target < 0) return false;
+        weight_[static_cast<std::size_t>(target)] += departures[n + 1] - departures[n];
+      }
+    }
+  }
+  return std::find(weight_.begin(), weight_.end(), 0u) == weight_.end();
+}
+
+/// Makes the grid of the blocks that hold particles now, and source_ for it.
+template <class Real>
+bool BlockOrder<Real>::update_grid(State<Real>& state) {
+  const bool same = same_owners(state);
+  const std::size_t owners = state.grid.owners().size();
+  old_blocks_.resize(owners);
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    old_blocks_[owner] = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+  }
+  if (!same) {
+    new_blocks_.clear();
+    for (std::size_t owner = 0; owner < owners; ++owner) {
+      std::uint32_t receives = 0;
+      for (std::size_t k = 0; k < state.sets.size(); ++k) {
+        const Departures& departures = buffers_[k].old[owner].departures;
+        const auto& begin = state.sets[k].begin;
+        if (begin[owner + 1] - begin[owner] > departures[kNeighbours]) receives |= 1u << kSelf;
+        for (std::size_t n = 0; n < kNeighbours; ++n) {
+          if (departures[n + 1] > departures[n]) receives |= 1u << n;
+        }
+      }
+      const Index3& block = old_blocks_[owner];
+      for (int n = 0; n < kNeighbours; ++n) {
+        if ((receives >> n & 1u) == 0) continue;
+        const Index3 away = offset_of(n);
+        new_blocks_.push_back({block[0] + away[0], block[1] + away[1], block[2] + away[2]});
+      }
+    }
+    state.grid.build(new_blocks_, state.topology);
+  }
+  source_.assign(state.grid.size(), -1);
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    const std::int32_t block = same ? state.grid.owners()[owner] : state.grid.find_block(old_blocks_[owner]);
+    if (block >= 0) source_[static_cast<std::size_t>(block)] = static_cast<std::int32_t>(owner);
+  }
+  return !same;
+}
+
+/// Calls visit(first, last) for each stretch of movers of set k that come to a new owner.
 template <class Real>
 template <class Visit>
-void BlockOrder<Real>::for_each_arrival(const State<Real>& state, const BlockGrid& old, std::size_t k,
-                                        std::size_t owner, Visit visit) const {
-  const Index3 block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
-  for (int n = 0; n < kNeighbours; ++n) {
-    const Index3 away = offset_of(n);
-    const Index3 from = state.topology.wrap({block[0] - away[0], block[1] - away[1], block[2] - away[2]});
-    const std::int32_t source = old.find_owner(from);
+void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k, std::size_t owner,
+                                        Visit visit) const {
+  const auto neighbours = state.grid.neighbours(owner);
+  for (std::size_t n = 0; n < kNeighbours; ++n) {
+    // Who goes towards n comes from the other side.
+    const std::int32_t from = neighbours[kNeighbours - 1 - n];
+    const std::int32_t source = from < 0 ? -1 : source_[static_cast<std::size_t>(from)];
     if (source < 0) continue;
-    const Departures& departures = departures_[k][static_cast<std::size_t>(source)];
+    const Departures& departures = buffers_[k].old[static_cast<std::size_t>(source)].departures;
+    if (departures[n] == departures[n + 1]) continue;
     const std::size_t base = state.sets[k].begin[static_cast<std::size_t>(source)];
-    visit(base + departures[static_cast<std::size_t>(n)], base + departures[static_cast<std::size_t>(n) + 1]);
+    visit(base + departures[n], base + departures[n + 1]);
   }
 }
 
-/// Writes the particles that come to an owner to `place`, by cell and then by id.
+/// Gives each new owner its share of the range.
 template <class Real>
-void BlockOrder<Real>::sort_arrivals(const State<Real>& state, const BlockGrid& old, std::size_t k,
-                                     std::size_t owner, double shift, std::uint32_t* place) {
+void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Threads& threads) {
+  const std::size_t owners = state.grid.owners().size();
+  std::vector<std::uint32_t>& begin = buffers_[k].begin;
+  begin.assign(owners + 1, 0);
+  threads.for_each(
+      owners,
+      [&](std::size_t owner) {
+        const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
+        std::uint32_t count = 0;
+        if (source >= 0) {
+          const auto old = static_cast<std::size_t>(source);
+          count = state.sets[k].begin[old + 1] - state.sets[k].begin[old] -
+                  buffers_[k].old[old].departures[kNeighbours];
+        }
+        for_each_arrival(state, k, owner, [&](std::size_t first, std::size_t last) {
+          count += static_cast<std::uint32_t>(last - first);
+        });
+        begin[owner + 1] = count;
+      },
+      64);
+  for (std::size_t owner = 0; owner < owners; ++owner) begin[owner + 1] += begin[owner];
+  REPOSE_ASSERT(begin[owners] == state.sets[k].count);
+}
+
+/// Writes the particles that come to an owner, or stay, to the permutation: by cell and then by id.
+template <class Real>
+void BlockOrder<Real>::sort_owner(const State<Real>& state, std::size_t k, std::size_t owner) {
+  Buffers& buffers = buffers_[k];
   const ParticleSet<Real>& set = state.sets[k];
-  auto& items = items_[static_cast<std::size_t>(Threads::index())];
-  items.clear();
-  std::array<std::uint32_t, kBlockNodes + 1> next{};
-  for_each_arrival(state, old, k, owner, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint32_t p = grouped_[i];
-      items.push_back({cell_in_block(set, p, shift), p});
-      ++next[items.back().cell + 1];
+  const std::size_t begin = buffers.begin[owner], count = buffers.begin[owner + 1] - begin;
+  const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
+  std::size_t first = 0, last = 0;  // who was here before
+  if (source >= 0) {
+    first = set.begin[static_cast<std::size_t>(source)];
+    last = set.begin[static_cast<std::size_t>(source) + 1];
+  }
+  std::uint32_t* const place = buffers.permutation.data() + begin;
+  if (source >= 0 && count == last - first && buffers.old[static_cast<std::size_t>(source)].in_order) {
+    for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(first + i);
+    return;
+  }
+  const std::uint8_t* const cells = buffers.cell.data();
+  std::array<std::uint32_t, 2 * kMoves> next{};  // per cell; from kMoves on, who leaves
+  for (std::size_t p = first; p < last; ++p) ++next[cells[p]];
+  for_each_arrival(state, k, owner, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) ++next[cells[buffers.movers()[i]] - kMoves];
+  });
+  std::uint32_t sum = 0;
+  for (std::size_t cell = 0; cell < kBases; ++cell) sum += std::exchange(next[cell], sum);
+
+  auto& keys = keys_[static_cast<std::size_t>(Threads::index())];
+  if (keys.size() < count) keys.resize(count);
+  const auto put = [&](std::size_t p, std::size_t cell) {
+    keys[next[cell]++] = std::uint64_t{set.id[p]} << 32 | p;
+  };
+  for (std::size_t p = first; p < last; ++p) {
+    if (cells[p] < kMoves) put(p, cells[p]);
+  }
+  for_each_arrival(state, k, owner, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const std::size_t p = buffers.movers()[i];
+      put(p, cells[p] - kMoves);
     }
   });
-  for (std::size_t cell = 0; cell < kBlockNodes; ++cell) next[cell + 1] += next[cell];
-  const auto begin = next;
-  for (const Item& item : items) place[next[item.cell]++] = item.index;
-  const auto by_id = [&set](std::uint32_t a, std::uint32_t b) { return set.id[a] < set.id[b]; };
-  for (std::size_t cell = 0; cell < kBlockNodes; ++cell) {
-    std::uint32_t* const first = place + begin[cell];
-    std::uint32_t* const last = place + begin[cell + 1];
+  std::uint64_t* cell_begin = keys.data();
+  for (std::size_t cell = 0; cell < kBases; ++cell) {
+    std::uint64_t* const cell_end = keys.data() + next[cell];
     // Most of a cell's particles were in this order before.
-    if (!std::is_sorted(first, last, by_id)) std::sort(first, last, by_id);
+    if (!std::is_sorted(cell_begin, cell_end)) std::sort(cell_begin, cell_end);
+    cell_begin = cell_end;
   }
+  for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(keys[i]);
 }
 
 template <class Real>
-void BlockOrder<Real>::permute(ParticleSet<Real>& set, Threads& threads, double shift) {
+void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
+                                     const Locator<Real>& locator) const {
   constexpr std::size_t kPiece = 4096;
   const std::size_t pieces = (set.count + kPiece - 1) / kPiece;
-  const auto move = [&](auto& channel, auto& moved, auto value) {
-    moved.reserve_uninitialized(set.count);
+  const std::uint32_t* const from = buffers.permutation.data();
+  const auto move = [&](AlignedArray<Real>& channel, const auto& value) {
+    const Real* const old = channel.data();
+    Real* const moved = buffers.spare.data();
     threads.for_each(pieces, [&](std::size_t piece) {
       const std::size_t end = std::min(set.count, (piece + 1) * kPiece);
-      for (std::size_t p = piece * kPiece; p < end; ++p) moved[p] = value(channel[permutation_[p]]);
+      for (std::size_t p = piece * kPiece; p < end; ++p) moved[p] = value(old[from[p]]);
     });
-    swap(channel, moved);
+    swap(channel, buffers.spare);
   };
-  const auto same = [](auto value) { return value; };
+  const auto same = [](Real value) { return value; };
   for (auto& channel : set.position) {
-    move(channel, moved_,
-         [shift](Real x) { return x - static_cast<Real>(kBlockSide * blocks_away(x, shift)); });
+    move(channel, [&](Real x) { return x - static_cast<Real>(kBlockSide * locator.blocks_away(x)); });
   }
-  for (auto& channel : set.velocity) move(channel, moved_, same);
-  for (auto& channel : set.affine) move(channel, moved_, same);
-  for (auto& channel : set.strain) move(channel, moved_, same);
-  for (auto& channel : set.extra) move(channel.values, moved_, same);
-  move(set.id, moved_ids_, same);
+  for (auto& channel : set.velocity) move(channel, same);
+  for (auto& channel : set.affine) move(channel, same);
+  for (auto& channel : set.strain) move(channel, same);
+  for (auto& channel : set.extra) move(channel.values, same);
+  // Ids last: the permutation, not needed any more, becomes them.
+  std::uint32_t* const ids = buffers.permutation.data();
+  threads.for_each(pieces, [&](std::size_t piece) {
+    const std::size_t end = std::min(set.count, (piece + 1) * kPiece);
+    for (std::size_t p = piece * kPiece; p < end; ++p) ids[p] = set.id[ids[p]];
+  });
+  swap(set.id, buffers.permutation);
 }
 
 template <class Real>
-void BlockOrder<Real>::order(State<Real>& state, Threads& threads, double shift) {
-  const std::size_t old_owners = state.grid.owners().size();
-  BlockGrid old = std::move(state.grid);
-  state.grid = BlockGrid();
-  departures_.resize(state.sets.size());
-  items_.resize(static_cast<std::size_t>(threads.count()));
-
-  // Each old block groups its particles; the blocks that receive any are the new owners.
-  std::vector<std::vector<std::uint32_t>> grouped(state.sets.size());
-  std::vector<std::uint32_t> receives(old_owners, 0);
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    departures_[k].resize(old_owners);
-    grouped_.resize(state.sets[k].count);
-    threads.for_each(old_owners, [&](std::size_t owner) {
-      Departures& departures = departures_[k][owner];
-      group_by_destination(state.sets[k], owner, shift, departures);
-      for (std::size_t n = 0; n < kNeighbours; ++n) {
-        if (departures[n + 1] > departures[n]) receives[owner] |= 1u << n;
-      }
-    });
-    if (state.sets.size() > 1) grouped[k].swap(grouped_);
+bool BlockOrder<Real>::order(State<Real>& state, Threads& threads, const Ownership& ownership) {
+  const Locator<Real> locator(ownership);
+  const std::size_t sets = state.sets.size(), old_owners = state.grid.owners().size();
+  buffers_.resize(sets);
+  keys_.resize(static_cast<std::size_t>(threads.count()));
+  for (std::size_t k = 0; k < sets; ++k) {
+    Buffers& buffers = buffers_[k];
+    buffers.old.resize(old_owners);
+    buffers.cell.reserve_uninitialized(state.sets[k].count);
+    buffers.spare.reserve_uninitialized(state.sets[k].count);
+    buffers.permutation.reserve_uninitialized(state.sets[k].count);
+    threads.for_each(old_owners, [&](std::size_t owner) { classify(state.sets[k], owner, locator, buffers); });
   }
-  std::vector<Index3> owners;
-  for (std::size_t owner = 0; owner < old_owners; ++owner) {
-    const Index3 block = old.blocks()[static_cast<std::size_t>(old.owners()[owner])];
-    for (int n = 0; n < kNeighbours; ++n) {
-      if ((receives[owner] >> n & 1u) == 0) continue;
-      const Index3 away = offset_of(n);
-      owners.push_back({block[0] + away[0], block[1] + away[1], block[2] + away[2]});
-    }
-  }
-  state.grid.build(owners, state.topology);
-
-  // Each new block takes its share of the range and sorts what comes to it.
+  const bool new_grid = update_grid(state);
   const std::size_t new_owners = state.grid.owners().size();
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    if (state.sets.size() > 1) grouped[k].swap(grouped_);
-    std::vector<std::uint32_t> begin(new_owners + 1, 0);
-    threads.for_each(new_owners, [&](std::size_t owner) {
-      for_each_arrival(state, old, k, owner, [&](std::size_t first, std::size_t last) {
-        begin[owner + 1] += static_cast<std::uint32_t>(last - first);
-      });
-    });
-    for (std::size_t owner = 0; owner < new_owners; ++owner) begin[owner + 1] += begin[owner];
-    permutation_.resize(state.sets[k].count);
-    threads.for_each(new_owners, [&](std::size_t owner) {
-      sort_arrivals(state, old, k, owner, shift, permutation_.data() + begin[owner]);
-    });
-    REPOSE_ASSERT(begin[new_owners] == state.sets[k].count);
-    permute(state.sets[k], threads, shift);
-    state.sets[k].begin = std::move(begin);
+  for (std::size_t k = 0; k < sets; ++k) {
+    share_out(state, k, threads);
+    threads.for_each(new_owners, [&](std::size_t owner) { sort_owner(state, k, owner); });
+    move_channels(state.sets[k], buffers_[k], threads, locator);
+    state.sets[k].begin.swap(buffers_[k].begin);
   }
   state.nodes.resize(state.grid.size());
   state.rows_touched.assign(new_owners, 0);
@@ -191,67 +304,28 @@ void BlockOrder<Real>::order(State<Real>& state, Threads& threads, double shift)
   state.counters.runs_when_ordered = -1;
   state.counters.runs_wasted = 0;
   ++state.counters.orders;
+  return new_grid;
 }
 
 template <class Real>
 std::size_t BlockOrder<Real>::bytes() const {
-  std::size_t sum = (grouped_.capacity() + permutation_.capacity()) * sizeof(std::uint32_t) + moved_.bytes() +
-                    moved_ids_.bytes();
-  for (const auto& set : departures_) sum += set.capacity() * sizeof(Departures);
-  for (const auto& items : items_) sum += items.capacity() * sizeof(Item);
+  std::size_t sum = source_.capacity() * sizeof(std::int32_t) + weight_.capacity() * sizeof(std::uint32_t) +
+                    (old_blocks_.capacity() + new_blocks_.capacity()) * sizeof(Index3);
+  for (const Buffers& buffers : buffers_) {
+    sum += buffers.cell.bytes() + buffers.spare.bytes() + buffers.permutation.bytes() +
+           buffers.old.capacity() * sizeof(OldOwner) + buffers.begin.capacity() * sizeof(std::uint32_t);
+  }
   return sum;
 }
 
 template <class Real>
-void place_in_blocks(State<Real>& state, const std::vector<std::vector<Index3>>& cells, double shift) {
-  // Cells become blocks; offsets become relative to them.
-  std::vector<Index3> owners;
-  std::vector<std::vector<Index3>> block_of(state.sets.size());
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    ParticleSet<Real>& set = state.sets[k];
-    block_of[k].resize(set.count);
-    for (std::size_t p = 0; p < set.count; ++p) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t a = static_cast<std::size_t>(axis);
-        // The block of the base node: the cell's, or the one before where the base lies across the face.
-        const std::int32_t cell = cells[k][p][a];
-        const std::int32_t base = cell + base_node(set.position[axis][p], shift);
-        block_of[k][p][a] = floor_divide(base, kBlockSide);
-        set.position[axis][p] += static_cast<Real>(cell - block_of[k][p][a] * kBlockSide);
-      }
-      block_of[k][p] = state.topology.wrap(block_of[k][p]);
-      if (owners.empty() || owners.back() != block_of[k][p]) owners.push_back(block_of[k][p]);
-    }
-  }
-  std::sort(owners.begin(), owners.end());
-  owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
-  state.grid.build(owners, state.topology);
-
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    ParticleSet<Real>& set = state.sets[k];
-    std::vector<std::uint32_t> place(set.count);
-    set.begin.assign(state.grid.owners().size() + 1, 0);
-    for (std::size_t p = 0; p < set.count; ++p) {
-      place[p] = static_cast<std::uint32_t>(state.grid.find_owner(block_of[k][p]));
-      ++set.begin[place[p] + 1];
-    }
-    for (std::size_t b = 1; b < set.begin.size(); ++b) set.begin[b] += set.begin[b - 1];
-    std::vector<std::uint32_t> next(set.begin.begin(), set.begin.end() - 1);
-    for (std::size_t p = 0; p < set.count; ++p) place[p] = next[place[p]]++;
-    const auto scatter = [&](auto& channel) {
-      auto moved = std::remove_reference_t<decltype(channel)>(set.count);
-      for (std::size_t p = 0; p < set.count; ++p) moved[place[p]] = channel[p];
-      swap(channel, moved);
-    };
-    set.for_each_real(scatter);
-    scatter(set.id);
-  }
-  state.counters.order_due = 1;
+std::size_t BlockOrder<Real>::scratch_bytes() const {
+  std::size_t sum = 0;
+  for (const auto& keys : keys_) sum += keys.capacity() * sizeof(std::uint64_t);
+  return sum;
 }
 
 template class BlockOrder<float>;
 template class BlockOrder<double>;
-template void place_in_blocks<float>(State<float>&, const std::vector<std::vector<Index3>>&, double);
-template void place_in_blocks<double>(State<double>&, const std::vector<std::vector<Index3>>&, double);
 
 }  // namespace repose

@@ -10,51 +10,72 @@
 // become so short that scattering loses more than ordering costs. Both are counted, never timed.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/state/ownership.h"
 #include "engine/state/state.h"
 
 namespace repose {
 
-/// Memory that ordering keeps between events.
+/// Makes the order of a state, and keeps memory for it between events: 9 bytes a particle in single precision.
 template <class Real>
 class BlockOrder {
  public:
-  /// Sorts all sets, rebuilds the block grid and moves every channel along. `base_shift` is the stencil's: base
-  /// node = floor(x - shift).
-  void order(State<Real>& state, Threads& threads, double base_shift);
+  /// Sorts all sets, brings the block grid up to date and moves every channel along. Returns whether the blocks
+  /// of the grid were made anew.
+  bool order(State<Real>& state, Threads& threads, const Ownership& ownership);
 
+  /// Memory that grows with the particles.
   std::size_t bytes() const;
+  /// Memory of the threads.
+  std::size_t scratch_bytes() const;
 
  private:
-  struct Item {
-    std::uint32_t cell, index;
-  };
-  /// Where the particles of one old block go, per set: offsets of the 27 groups in its range.
+  /// Where the particles that leave an old block go: offsets of the 27 groups in its range of movers.
   using Departures = std::array<std::uint32_t, kNeighbours + 1>;
 
-  void group_by_destination(const ParticleSet<Real>& set, std::size_t owner, double shift,
-                            Departures& departures);
-  template <class Visit>
-  void for_each_arrival(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner,
-                        Visit visit) const;
-  void sort_arrivals(const State<Real>& state, const BlockGrid& old, std::size_t k, std::size_t owner,
-                     double shift, std::uint32_t* place);
-  void permute(ParticleSet<Real>& set, Threads& threads, double shift);
+  struct OldOwner {
+    Departures departures;
+    bool in_order;  ///< nobody leaves, and those who stay are sorted
+  };
 
-  std::vector<std::vector<Departures>> departures_;  // per set, per old owner
-  std::vector<std::uint32_t> grouped_;               // particle indices by old block and destination
-  std::vector<std::uint32_t> permutation_;           // new place -> old place
-  AlignedArray<Real> moved_;
-  AlignedArray<std::uint32_t> moved_ids_;
-  std::vector<std::vector<Item>> items_;  // per thread
+  /// Of one set, so that channels and spares that change places have one size.
+  struct Buffers {
+    AlignedArray<std::uint8_t> cell;  ///< base node in the block that the particle comes to, and kMoves
+    /// While sorting, who leaves, by old block and destination; then the target of the channel that is moved.
+    AlignedArray<Real> spare;
+    AlignedArray<std::uint32_t> permutation;  ///< new place -> old place; at last the ids
+    std::vector<OldOwner> old;                ///< per old owner
+    std::vector<std::uint32_t> begin;         ///< per new owner
+
+    std::uint32_t* movers() { return reinterpret_cast<std::uint32_t*>(spare.data()); }
+    const std::uint32_t* movers() const { return reinterpret_cast<const std::uint32_t*>(spare.data()); }
+  };
+
+  void classify(const ParticleSet<Real>& set, std::size_t owner, const Locator<Real>& locator,
+                Buffers& buffers) const;
+  bool update_grid(State<Real>& state);
+  bool same_owners(const State<Real>& state);
+  template <class Visit>
+  void for_each_arrival(const State<Real>& state, std::size_t k, std::size_t owner, Visit visit) const;
+  void share_out(const State<Real>& state, std::size_t k, Threads& threads);
+  void sort_owner(const State<Real>& state, std::size_t k, std::size_t owner);
+  void move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
+                     const Locator<Real>& locator) const;
+
+  std::vector<Buffers> buffers_;                  // per set
+  std::vector<std::int32_t> source_;              // per block of the new grid: the old owner there, or -1
+  std::vector<std::uint32_t> weight_;             // per old owner: particles after the event, if owners stay
+  std::vector<Index3> old_blocks_, new_blocks_;   // of owners
+  std::vector<std::vector<std::uint64_t>> keys_;  // per thread
 };
 
 /// Puts freshly seeded particles, whose channels are filled in id order and whose positions are in cells from
-/// the scene lattice's origin in `cell`, into blocks. The state must then be ordered.
+/// the scene lattice's origin in `cells`, into blocks. The state must then be ordered. `cells` is used up.
 template <class Real>
-void place_in_blocks(State<Real>& state, const std::vector<std::vector<Index3>>& cells, double base_shift);
+void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells, const Ownership& ownership);
 
 }  // namespace repose

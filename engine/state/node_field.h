@@ -15,7 +15,13 @@ template <class Real>
 struct NodeField {
   AlignedArray<Real> values;
 
-  void resize(std::size_t blocks) { values.reserve_uninitialized(blocks * kBlockValues); }
+  /// Makes room. A field that grows once grows again, step by step as material spreads: it takes an eighth more
+  /// than asked for, so that most of the following events find room.
+  void resize(std::size_t blocks) {
+    if (blocks * kBlockValues <= values.size()) return;
+    const std::size_t more = values.size() == 0 ? 0 : blocks / 8;
+    values.reserve_uninitialized((blocks + more) * kBlockValues);
+  }
   Real* block(std::size_t index) { return values.data() + index * kBlockValues; }
   const Real* block(std::size_t index) const { return values.data() + index * kBlockValues; }
   std::size_t bytes() const { return values.bytes(); }

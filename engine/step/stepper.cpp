@@ -52,8 +52,10 @@ void Stepper<Real>::order_if_due(State<Real>& state) {
   const bool wasteful = counters.runs_wasted * kCostOfRun > particles * kCostOfOrder;
   if (counters.order_due == 0 && !wasteful) return;
   const PhaseTimer timer(profile_, Phase::kOrder);
-  order_.order(state, threads_, plan_.transfer.base_shift);
+  const bool new_blocks = order_.order(state, threads_, {plan_.transfer.base_shift});
+  if (topology_known_ && !new_blocks) return;
   for (const auto& pass : plan_.order) pass.run(state);
+  topology_known_ = true;
 }
 
 template <class Real>
@@ -191,15 +193,15 @@ template <class Real>
 std::optional<Offender> Stepper<Real>::inspect(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kInspect);
   const std::size_t owners = state.grid.owners().size();
-  std::vector<std::int32_t> suspects;
+  suspects_.clear();
   for (std::size_t owner = 0; owner < owners; ++owner) {
-    if (!bounded(state, owner, dt)) suspects.push_back(static_cast<std::int32_t>(owner));
+    if (!bounded(state, owner, dt)) suspects_.push_back(static_cast<std::int32_t>(owner));
   }
-  std::vector<std::optional<Offender>> found(suspects.size());
-  threads_.for_each(suspects.size(), [&](std::size_t i) {
-    found[i] = inspect_block(state, static_cast<std::size_t>(suspects[i]), dt);
+  found_.resize(suspects_.size());
+  threads_.for_each(suspects_.size(), [&](std::size_t i) {
+    found_[i] = inspect_block(state, static_cast<std::size_t>(suspects_[i]), dt);
   });
-  for (auto& offender : found) {
+  for (const auto& offender : found_) {
     if (offender) return offender;
   }
   return std::nullopt;
@@ -319,10 +321,16 @@ void Stepper<Real>::finish(State<Real>& state, Real) {
 
 template <class Real>
 std::size_t Stepper<Real>::bytes() const {
+  return order_.bytes() + bounds_.capacity() * sizeof(VelocityBounds<Real>) +
+         motion_.capacity() * sizeof(Motion<Real>) + runs_.capacity() * sizeof(std::size_t) +
+         suspects_.capacity() * sizeof(std::int32_t) + found_.capacity() * sizeof(std::optional<Offender>);
+}
+
+template <class Real>
+std::size_t Stepper<Real>::scratch_bytes() const {
   const std::size_t per_thread =
       sizeof(Real) * (2 * kArenaValues + kChunk * (kStrainComponents + 3 + kAffineComponents + 1));
-  return order_.bytes() + scratch_.size() * per_thread + bounds_.capacity() * sizeof(VelocityBounds<Real>) +
-         motion_.capacity() * sizeof(Motion<Real>) + runs_.capacity() * sizeof(std::size_t);
+  return order_.scratch_bytes() + scratch_.size() * per_thread;
 }
 
 template class Stepper<float>;

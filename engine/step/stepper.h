@@ -48,8 +48,10 @@ class Stepper {
   const Profile& profile() const { return profile_; }
   void reset_profile() { profile_ = {}; }
   Threads& threads() { return threads_; }
-  /// Memory of scratch and ordering.
+  /// Memory that grows with the particles, and with the blocks: ordering, and numbers per block.
   std::size_t bytes() const;
+  /// Memory of the threads, whatever the scene.
+  std::size_t scratch_bytes() const;
   /// Brings the order up to date, if it is due; a step does so by itself.
   void order_if_due(State<Real>& state);
 
@@ -75,9 +77,12 @@ class Stepper {
   Threads threads_;
   BlockOrder<Real> order_;
   std::vector<Scratch<Real>> scratch_;
-  std::vector<VelocityBounds<Real>> bounds_;  // per block
-  std::vector<Motion<Real>> motion_;          // per owner
-  std::vector<std::size_t> runs_;             // per owner
+  std::vector<VelocityBounds<Real>> bounds_;    // per block
+  std::vector<Motion<Real>> motion_;            // per owner
+  std::vector<std::size_t> runs_;               // per owner
+  std::vector<std::int32_t> suspects_;          // owners that must gather on trial
+  std::vector<std::optional<Offender>> found_;  // per suspect
+  bool topology_known_ = false;                 // to the passes that follow it
   Profile profile_;
 };
 

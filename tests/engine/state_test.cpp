@@ -17,8 +17,6 @@
 namespace repose {
 namespace {
 
-constexpr double kShift = 0.5;
-
 /// A value that only channel c of particle id has.
 float mark(std::uint32_t id, int c) {
   return static_cast<float>(id * 32 + static_cast<std::uint32_t>(c));
@@ -32,6 +30,7 @@ struct Making {
   std::uint32_t storage_seed = 0;  ///< the order in which they are handed over
   Topology topology{};
   Index3 origin{0, 0, 0};
+  Ownership ownership{};
 };
 
 State<float> make_state(const Making& making) {
@@ -63,13 +62,13 @@ State<float> make_state(const Making& making) {
       }
     }
   }
-  place_in_blocks(state, cells, kShift);
+  place_in_blocks(state, cells, making.ownership);
   return state;
 }
 
-void order(State<float>& state, int threads = 2) {
+void order(State<float>& state, int threads = 2, const Ownership& ownership = {}) {
   Threads pool(threads);
-  BlockOrder<float>().order(state, pool, kShift);
+  BlockOrder<float>().order(state, pool, ownership);
 }
 
 /// Calls visit(set, owner, p) for every particle.
@@ -99,16 +98,20 @@ std::map<std::uint32_t, Vec3> places(const State<float>& state) {
 }
 
 /// Sorted by block, cell and id; offsets within the block; all channels with their particle.
-void expect_ordered(const State<float>& state) {
+void expect_ordered(const State<float>& state, const Ownership& ownership = {}) {
+  const float shift = static_cast<float>(ownership.base_shift);
+  const float lowest = static_cast<float>(ownership.block_shift);
   std::size_t last_owner = 0;
   std::array<std::uint32_t, 2> last{0, 0};
   const ParticleSet<float>* last_set = nullptr;
   for_each_particle(state, [&](const ParticleSet<float>& set, std::size_t owner, std::size_t p) {
     std::uint32_t cell = 0;
     for (const auto& channel : set.position) {
-      const float base = std::floor(channel[p] - 0.5f);
-      ASSERT_TRUE(base >= 0.0f && base <= 3.0f) << base;
-      cell = cell * 4 + static_cast<std::uint32_t>(base);
+      const float x = channel[p] - shift;
+      ASSERT_TRUE(x >= lowest && x < lowest + 4.0f) << x;
+      const float base = std::floor(x);
+      ASSERT_TRUE(base >= 0.0f && base <= (lowest > 0.0f ? 4.0f : 3.0f)) << base;
+      cell = cell * 5 + static_cast<std::uint32_t>(base);
     }
     const std::array<std::uint32_t, 2> key{cell, set.id[p]};
     if (last_set == &set && last_owner == owner) {
@@ -218,6 +221,49 @@ TEST(BlockOrder, DriftAcrossFaces_KeepsPlaces) {
     expect_ordered(state);
     expect_same_places(state, before);
   }
+}
+
+TEST(BlockOrder, ShiftedBlocks_HoldBasesZeroToFour) {
+  // The base of an even stencil changes at nodes: blocks shifted by half a cell give its drift the same room on
+  // either side.
+  for (const Ownership& ownership : {Ownership{1.0, 0.5}, Ownership{0.5, 0.5}, Ownership{1.0, 0.0}}) {
+    State<float> state = make_state({.count = 20000, .ownership = ownership});
+    const auto fresh = places(state);
+    order(state, 2, ownership);
+    expect_ordered(state, ownership);
+    expect_same_places(state, fresh);
+    drift(state, 1);
+    const auto drifted = places(state);
+    order(state, 2, ownership);
+    expect_ordered(state, ownership);
+    expect_same_places(state, drifted);
+    float highest = 0.0f;
+    for (const auto& set : state.sets) {
+      for (std::size_t p = 0; p < set.count; ++p) highest = std::max(highest, set.position[0][p]);
+    }
+    EXPECT_GE(highest, static_cast<float>(ownership.base_shift + ownership.block_shift + 3.5));
+  }
+}
+
+TEST(BlockOrder, OwnersComeAndGo_GridFollows) {
+  // Three particles of two sets wander; a block exists as long as it holds one, or lies beside one that does.
+  State<float> state = make_state({.lower = {1, 1, 1}, .upper = {3, 3, 3}, .count = 3});
+  Threads pool(2);
+  BlockOrder<float> block_order;
+  EXPECT_FALSE(block_order.order(state, pool, {})) << "the grid that the particles were placed in";
+  ASSERT_EQ(state.grid.owners().size(), 1u);
+  const auto push = [&](ParticleSet<float>& set, float cells) {
+    for (std::size_t p = 0; p < set.count; ++p) set.position[0][p] += cells;
+  };
+  push(state.sets[0], 4.0f);
+  EXPECT_TRUE(block_order.order(state, pool, {}));
+  ASSERT_EQ(state.grid.owners().size(), 2u) << "one set stayed";
+  push(state.sets[1], 4.0f);
+  EXPECT_TRUE(block_order.order(state, pool, {}));
+  ASSERT_EQ(state.grid.owners().size(), 1u) << "both sets are in the next block";
+  EXPECT_EQ(state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[0])], (Index3{1, 0, 0}));
+  EXPECT_FALSE(block_order.order(state, pool, {}));
+  expect_ordered(state);
 }
 
 TEST(BlockOrder, DriftAcrossASeam_FallsOnTheOtherSide) {

@@ -1,0 +1,72 @@
+// Repose: from seeds to a state: particles find their blocks, in the order in which they came. Runs once.
+#include <algorithm>
+
+#include "engine/state/block_order.h"
+
+namespace repose {
+
+namespace {
+
+/// Turns cells into the blocks that own them, in place, and offsets in a cell into offsets in its block.
+template <class Real>
+void find_blocks(ParticleSet<Real>& set, const Topology& topology, const Locator<Real>& locator,
+                 std::vector<Index3>& cells) {
+  for (std::size_t p = 0; p < set.count; ++p) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      // Mostly the cell's block; the one before where the base lies across the face.
+      const std::int32_t cell = cells[p][axis];
+      cells[p][axis] = locator.block(cell, set.position[axis][p]);
+      set.position[axis][p] += static_cast<Real>(cell - cells[p][axis] * kBlockSide);
+    }
+    cells[p] = topology.wrap(cells[p]);
+  }
+}
+
+/// Moves particles to the ranges of their owners. `blocks` is gone before the channels need room.
+template <class Real>
+void sort_by_owner(ParticleSet<Real>& set, const BlockGrid& grid, std::vector<Index3> blocks) {
+  std::vector<std::uint32_t> place(set.count);
+  set.begin.assign(grid.owners().size() + 1, 0);
+  for (std::size_t p = 0; p < set.count; ++p) {
+    place[p] = static_cast<std::uint32_t>(grid.find_owner(blocks[p]));
+    ++set.begin[place[p] + 1];
+  }
+  std::vector<Index3>().swap(blocks);
+  for (std::size_t b = 1; b < set.begin.size(); ++b) set.begin[b] += set.begin[b - 1];
+  std::vector<std::uint32_t> next(set.begin.begin(), set.begin.end() - 1);
+  for (std::size_t p = 0; p < set.count; ++p) place[p] = next[place[p]]++;
+  const auto scatter = [&](auto& channel, auto& moved) {
+    for (std::size_t p = 0; p < set.count; ++p) moved[place[p]] = channel[p];
+    swap(channel, moved);
+  };
+  AlignedArray<Real> moved(set.count);
+  set.for_each_real([&](AlignedArray<Real>& channel) { scatter(channel, moved); });
+  AlignedArray<std::uint32_t> moved_ids(set.count);
+  scatter(set.id, moved_ids);
+}
+
+}  // namespace
+
+template <class Real>
+void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells, const Ownership& ownership) {
+  const Locator<Real> locator(ownership);
+  std::vector<Index3> owners;
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    find_blocks(state.sets[k], state.topology, locator, cells[k]);
+    for (const Index3& block : cells[k]) {
+      if (owners.empty() || owners.back() != block) owners.push_back(block);
+    }
+  }
+  std::sort(owners.begin(), owners.end());
+  owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+  state.grid.build(owners, state.topology);
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    sort_by_owner(state.sets[k], state.grid, std::move(cells[k]));
+  }
+  state.counters.order_due = 1;
+}
+
+template void place_in_blocks<float>(State<float>&, std::vector<std::vector<Index3>>, const Ownership&);
+template void place_in_blocks<double>(State<double>&, std::vector<std::vector<Index3>>, const Ownership&);
+
+}  // namespace repose
