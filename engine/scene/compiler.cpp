@@ -14,9 +14,8 @@
 namespace repose {
 namespace {
 
-TransferConstants transfer_constants(const Scene& scene) {
-  const StencilFigures& stencil = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)];
-  return {scene.grid.stencil, scene.grid.transfer, stencil.base_shift, stencil.inverse_d};
+TransferChoice transfer_choice(const Scene& scene) {
+  return {scene.grid.stencil, scene.grid.transfer, scene.grid.kept_velocity, scene.grid.kept_stretching};
 }
 
 Topology make_topology(const Scene& scene) {
@@ -77,7 +76,9 @@ void fill_set(const Scene& scene, const BodyDescription& body, const Vec3& cente
     }
     const Vec3 v = body.velocity + w.cross(x - center);
     for (int axis = 0; axis < 3; ++axis) set.velocity[axis][p] = static_cast<Real>(v[axis]);
-    for (int k = 0; k < kAffineComponents; ++k) set.affine[k][p] = static_cast<Real>(spin[k]);
+    for (int k = 0; set.keeps_affine && k < kAffineComponents; ++k) {
+      set.affine[k][p] = static_cast<Real>(spin[k]);
+    }
     set.id[p] = first_id + static_cast<std::uint32_t>(p);
   }
 }
@@ -145,6 +146,7 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     const Bounds bounds = shapes[k]->bounds();
     ParticleSet<Real> set;
     set.material = material_index(scene, body.material);
+    set.keeps_affine = transfer_choice(scene).keeps_affine();
     const bool yields = material_of(scene, set.material).yields();
     for_each_effect(scene.effects, [&](const auto& effect) {
       for (const std::string& channel : effect.channels(yields)) set.extra.push_back({channel, {}});
@@ -154,7 +156,7 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     next_id += static_cast<std::uint32_t>(set.count);
     state.sets.push_back(std::move(set));
   }
-  place_in_blocks(state, std::move(cells), {transfer_constants(scene).base_shift});
+  place_in_blocks(state, std::move(cells), transfer_choice(scene).ownership());
   return {};
 }
 
@@ -164,7 +166,7 @@ void set_initial_maxima(State<Real>& state) {
     for (std::size_t p = 0; p < set.count; ++p) {
       double speed = 0.0, gradient = 0.0;
       for (const auto& v : set.velocity) speed += double(v[p]) * double(v[p]);
-      for (const auto& c : set.affine) gradient += double(c[p]) * double(c[p]);
+      for (const auto& c : set.affine) gradient += set.keeps_affine ? double(c[p]) * double(c[p]) : 0.0;
       state.counters.max_speed = std::max(state.counters.max_speed, std::sqrt(speed));
       state.counters.max_gradient = std::max(state.counters.max_gradient, std::sqrt(gradient));
     }
@@ -181,7 +183,7 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
                             const std::vector<Solid>& solids) {
   StepPlan<Real> plan;
   plan.kernels = &kernels<Real>(options.target);
-  plan.transfer = transfer_constants(scene);
+  plan.transfer = transfer_choice(scene);
   plan.limits = step_limits(scene);
   plan.advection = scene.grid.advection;
   const Lattice<Real> lattice = make_lattice(state, plan.transfer);
@@ -203,7 +205,11 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
 
   // Nodes.
   Assembly<Real> assembly{plan, state, solids};
-  plan.nodes.push_back(normalize_pass(plan));               // v* = p/m
+  plan.nodes.push_back(normalize_pass(plan));  // v* = p/m
+  if (plan.transfer.figures().keeps_velocity) {
+    plan.order.push_back(before_forces_room_pass<Real>());
+    plan.nodes.push_back(before_forces_pass<Real>());
+  }
   for_each_effect(scene.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
     if (effect.on()) effect.add_to_nodes(assembly);
   });
@@ -277,7 +283,8 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
 
 std::size_t bytes_per_particle(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
-  std::size_t bytes = real * (3 + 3 + kAffineComponents + kStrainComponents) + sizeof(std::uint32_t);
+  const int affine = transfer_choice(scene).keeps_affine() ? kAffineComponents : 0;
+  std::size_t bytes = real * static_cast<std::size_t>(3 + 3 + affine + kStrainComponents) + sizeof(std::uint32_t);
   bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
   for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
   return bytes;

@@ -72,6 +72,13 @@ void describe_grid(Fields& fields, GridDescription& grid) {
   for (const StencilFigures& stencil : kStencilFigures) stencils.push_back({stencil.name, stencil.meaning});
   fields.choice("stencil", grid.stencil, stencils, "how a particle spreads over nodes");
   fields.choice("transfer", grid.transfer, kTransferChoices, "how momentum moves between particles and nodes");
+  const auto share_of = [&](const char* key, double& value, const char* meaning) {
+    fields.number(key, value, {.meaning = meaning, .low = 0.0, .high = 1.0});
+  };
+  share_of("kept_velocity", grid.kept_velocity,
+           "flip, aflip: share of its own velocity that a particle keeps; 0 is pic, mls_apic");
+  share_of("kept_stretching", grid.kept_stretching,
+           "rpic: share of the stretching part of its matrix that a particle keeps; 1 is apic");
   fields.choice("advection", grid.advection, kAdvections,
                 "which velocity moves particles where there is friction");
   fields.integers("origin_cells", grid.origin_cells,

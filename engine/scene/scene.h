@@ -31,8 +31,10 @@ struct PeriodicAxis {
 struct GridDescription {
   double spacing = 0.01;  ///< dx, m
   Precision precision = Precision::kSingle;
-  int stencil = 0;   ///< position in Stencils
-  int transfer = 0;  ///< position in Transfers
+  int stencil = 0;               ///< position in Stencils
+  int transfer = 0;              ///< position in Transfers
+  double kept_velocity = 0.95;   ///< share of its own velocity that a particle keeps (flip, aflip)
+  double kept_stretching = 0.0;  ///< share of stretching that rpic keeps
   Advection advection = Advection::kAfterFriction;
   std::array<std::int64_t, 3> origin_cells{
       0, 0, 0};                     ///< where the scene's origin lies in the lattice; multiples of 8

@@ -18,7 +18,7 @@ void add_particle(const ParticleSet<Real>& set, std::size_t p, const Elasticity&
   Vec3 v;
   Mat3 c;
   for (int axis = 0; axis < 3; ++axis) v[axis] = set.velocity[axis][p];
-  for (int k = 0; k < kAffineComponents; ++k) c(k / 3, k % 3) = set.affine[k][p];
+  for (int k = 0; k < kAffineComponents; ++k) c(k / 3, k % 3) = set.keeps_affine ? set.affine[k][p] : Real(0);
   double eps[kStrainComponents];
   for (int k = 0; k < kStrainComponents; ++k) eps[k] = set.strain[k][p];
   const double trace = eps[0] + eps[3] + eps[5];

@@ -43,7 +43,7 @@ struct MemoryUse {
 
 /// How far a particle of a block can be from the block's middle, m.
 inline double block_radius(double spacing) {
-  return 0.5 * std::sqrt(3.0) * (kHighestBase - kLowestBase + 2) * spacing;
+  return 0.5 * std::sqrt(3.0) * kArenaSide * spacing;
 }
 
 template <class Real>

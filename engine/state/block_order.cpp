@@ -264,7 +264,9 @@ void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, T
     move(channel, [&](Real x) { return x - static_cast<Real>(kBlockSide * locator.blocks_away(x)); });
   }
   for (auto& channel : set.velocity) move(channel, same);
-  for (auto& channel : set.affine) move(channel, same);
+  for (auto& channel : set.affine) {
+    if (set.keeps_affine) move(channel, same);
+  }
   for (auto& channel : set.strain) move(channel, same);
   for (auto& channel : set.extra) move(channel.values, same);
   // Ids last: the permutation, not needed any more, becomes them.

@@ -28,6 +28,7 @@ struct ParticleSet {
 
   AlignedArray<Real> position[3];  ///< cells from the origin of the particle's block
   AlignedArray<Real> velocity[3];  ///< m/s
+  bool keeps_affine = true;        ///< whether the transfer stores C; if not, `affine` has no room
   AlignedArray<Real> affine[kAffineComponents];
   AlignedArray<Real> strain[kStrainComponents];
   AlignedArray<std::uint32_t> id;
@@ -41,7 +42,9 @@ struct ParticleSet {
   void for_each_real(Visit visit) {
     for (auto& channel : position) visit(channel);
     for (auto& channel : velocity) visit(channel);
-    for (auto& channel : affine) visit(channel);
+    for (auto& channel : affine) {
+      if (keeps_affine) visit(channel);
+    }
     for (auto& channel : strain) visit(channel);
     for (auto& channel : extra) visit(channel.values);
   }
@@ -62,7 +65,9 @@ struct ParticleSet {
       result.position[axis] = position[axis].data() + first;
       result.velocity[axis] = velocity[axis].data() + first;
     }
-    for (int k = 0; k < kAffineComponents; ++k) result.affine[k] = affine[k].data() + first;
+    for (int k = 0; k < kAffineComponents; ++k) {
+      result.affine[k] = keeps_affine ? affine[k].data() + first : nullptr;
+    }
     for (int k = 0; k < kStrainComponents; ++k) result.strain[k] = strain[k].data() + first;
     result.count = particles;
     return result;

@@ -40,6 +40,7 @@ struct State {
 
   BlockGrid grid;
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar
+  NodeField<Real> before_forces;            ///< mass and velocity before forces, for transfers that ask for it
   SparseNodeField<Real> after_friction;     ///< mass and v-tilde, in blocks where there is friction
   std::vector<std::uint64_t> rows_touched;  ///< per owner: arena rows that its particles reach
 
@@ -64,7 +65,7 @@ struct State {
     for (const auto& set : sets) sum += set.bytes();
     return sum;
   }
-  std::size_t grid_bytes() const { return nodes.bytes() + after_friction.bytes() + grid.bytes(); }
+  std::size_t grid_bytes() const { return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + grid.bytes(); }
 };
 
 }  // namespace repose

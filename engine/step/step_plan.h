@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/state/ownership.h"
 #include "engine/state/state.h"
 #include "kernels/pass/pass.h"
 
@@ -18,9 +19,11 @@ namespace repose {
 template <class Real>
 struct Scratch {
   AlignedArray<Real> arena{kArenaValues};  ///< nodes of a block and its halo: sums, later the moving velocity
-  AlignedArray<Real> kept_arena{kArenaValues};  ///< v-tilde, where it is not what moves
+  AlignedArray<Real> kept_arena{kArenaValues};    ///< v-tilde, where it is not what moves
+  AlignedArray<Real> before_arena{kArenaValues};  ///< velocity before forces, for transfers that ask for it
   AlignedArray<Real> stress{kStrainComponents * kChunk};
   AlignedArray<Real> velocity{3 * kChunk};
+  AlignedArray<Real> before{3 * kChunk};  ///< velocity before forces, at the particles
   AlignedArray<Real> affine{kAffineComponents * kChunk};
   AlignedArray<Real> value{
       kChunk};  ///< one number per particle, from the first half of an effect to its second
@@ -101,17 +104,27 @@ enum class Advection {
   kBeforeFriction,  ///< v-bar
 };
 
-/// Constants of stencil and transfer that the engine needs outside the kernels.
-struct TransferConstants {
+/// The stencil and the transfer of a scene.
+struct TransferChoice {
   int stencil = 0, transfer = 0;  ///< positions in the kernels' lists
-  double base_shift = 0.5;
-  double inverse_d = 4.0;
+  double kept_velocity = 0.0;     ///< share of its own velocity that a particle keeps (FLIP), in [0, 1]
+  double kept_stretching = 0.0;   ///< share of stretching that RPIC tells, in [0, 1]
+
+  const StencilFigures& nodes() const { return kStencilFigures[static_cast<std::size_t>(stencil)]; }
+  const TransferFigures& figures() const { return kTransferFigures[static_cast<std::size_t>(transfer)]; }
+  Ownership ownership() const { return {nodes().base_shift, nodes().block_shift}; }
+  /// Whether particles store C.
+  bool keeps_affine() const { return figures().affine != Affine::kNone; }
+  /// Whether the gradient that strains is another matrix than the C that a particle stores.
+  bool separate_gradient() const {
+    return !keeps_affine() || (figures().force == Force::kGradients && nodes().constant_d);
+  }
 };
 
 template <class Real>
 struct StepPlan {
   const Kernels<Real>* kernels = nullptr;
-  TransferConstants transfer;
+  TransferChoice transfer;
   StepLimits limits;
   Real least_mass = 0;  ///< kg; a node below it is empty
   Advection advection = Advection::kAfterFriction;

@@ -52,7 +52,7 @@ void Stepper<Real>::order_if_due(State<Real>& state) {
   const bool wasteful = counters.runs_wasted * kCostOfRun > particles * kCostOfOrder;
   if (counters.order_due == 0 && !wasteful) return;
   const PhaseTimer timer(profile_, Phase::kOrder);
-  const bool new_blocks = order_.order(state, threads_, {plan_.transfer.base_shift});
+  const bool new_blocks = order_.order(state, threads_, plan_.transfer.ownership());
   if (topology_known_ && !new_blocks) return;
   for (const auto& pass : plan_.order) pass.run(state);
   topology_known_ = true;
@@ -95,7 +95,8 @@ Offender Stepper<Real>::fastest(const State<Real>& state) const {
     for (std::size_t p = 0; p < set.count; ++p) {
       const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
       double size = v.squaredNorm();
-      for (const auto& c : set.affine) size += double(c[p]) * double(c[p]) * state.spacing * state.spacing;
+      for (const auto& c : set.affine)
+        size += !set.keeps_affine ? 0.0 : double(c[p]) * double(c[p]) * state.spacing * state.spacing;
       if (size <= most) continue;
       most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
       offender.set = set.name;
@@ -142,7 +143,7 @@ void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::si
   for (std::size_t n = 0; n < kNeighbours; ++n) {
     blocks[n] = neighbours[n] < 0 ? nullptr : state.nodes.block(static_cast<std::size_t>(neighbours[n]));
   }
-  plan_.kernels->add_arena(arena, rows, blocks);
+  plan_.kernels->stencil[plan_.transfer.stencil].add_arena(arena, rows, blocks);
   state.rows_touched[owner] = rows;
   runs_[owner] = runs;
 }
@@ -177,7 +178,8 @@ bool Stepper<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt
     first = false;
   }
   // A particle's v is a weighted mean of node velocities; with all of them within a distance delta of some
-  // velocity, |C| <= D^-1 delta sum w |x_i - x_p| <= delta sqrt(3 D^-1).
+  // velocity, |C| <= D^-1 delta sum w |x_i - x_p| <= delta sqrt(3 D^-1), and the stencil's bound covers that of
+  // gradients as well.
   double half_diagonal = 0.0, fastest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = 0.5 * (static_cast<double>(high[axis]) - static_cast<double>(low[axis]));
@@ -186,7 +188,8 @@ bool Stepper<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt
         {fastest, std::abs(static_cast<double>(low[axis])), std::abs(static_cast<double>(high[axis]))});
   }
   const double steps = static_cast<double>(dt) / state.spacing;
-  return fastest * steps < 0.999 && std::sqrt(half_diagonal * 3.0 * plan_.transfer.inverse_d) * steps < 0.999;
+  const double gradient = std::sqrt(half_diagonal) * plan_.transfer.nodes().gradient_bound;
+  return fastest * steps < 0.999 && gradient * steps < 0.999;
 }
 
 template <class Real>
@@ -216,12 +219,14 @@ std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::si
   std::optional<Offender> offender;
   for_each_chunk(state, owner, owner, dt, [&](std::size_t, Chunk<Real>& chunk) {
     if (offender) return;
-    GatherInput<Real> in{chunk.particles, lattice, {}, {}};
-    for (std::size_t axis = 0; axis < 3; ++axis) in.velocity[axis] = mine.velocity.data() + axis * kChunk;
-    for (std::size_t k = 0; k < kAffineComponents; ++k) in.affine[k] = mine.affine.data() + k * kChunk;
+    GatherInput<Real> in{};
+    in.particles = chunk.particles;
+    in.lattice = lattice;
+    for (std::size_t axis = 0; axis < 3; ++axis) in.moving[axis] = mine.velocity.data() + axis * kChunk;
+    for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = mine.affine.data() + k * kChunk;
     kernel(in, mine.arena.data());
     const std::size_t p =
-        plan_.kernels->inspect(in.velocity, in.affine, chunk.particles.count, dt, lattice.spacing);
+        plan_.kernels->inspect(in.moving, in.gradient, chunk.particles.count, dt, lattice.spacing);
     if (p < chunk.particles.count) offender = accuse(state, owner, chunk, p, in);
   });
   return offender;
@@ -239,8 +244,8 @@ Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, cons
   for (int axis = 0; axis < 3; ++axis) {
     offset[static_cast<std::size_t>(axis)] = chunk.particles.position[axis][p];
     offender.velocity[axis] = chunk.particles.velocity[axis][p];
-    offender.trial_velocity[axis] = trial.velocity[axis][p];
-    for (int c = 0; c < 3; ++c) map(axis, c) += static_cast<double>(chunk.dt) * trial.affine[3 * axis + c][p];
+    offender.trial_velocity[axis] = trial.moving[axis][p];
+    for (int c = 0; c < 3; ++c) map(axis, c) += static_cast<double>(chunk.dt) * trial.gradient[3 * axis + c][p];
   }
   offender.position = state.world(offender.block, offset);
   offender.determinant = map.determinant();
@@ -269,8 +274,16 @@ bool Stepper<Real>::load_arenas(const State<Real>& state, std::size_t owner, Scr
   }
   const std::uint64_t rows = state.rows_touched[owner];
   const bool two = friction && plan_.advection == Advection::kBeforeFriction;
-  plan_.kernels->load_arena(mine.arena.data(), rows, two ? bar : tilde);
-  if (two) plan_.kernels->load_arena(mine.kept_arena.data(), rows, tilde);
+  const auto load_arena = plan_.kernels->stencil[plan_.transfer.stencil].load_arena;
+  load_arena(mine.arena.data(), rows, two ? bar : tilde);
+  if (two) load_arena(mine.kept_arena.data(), rows, tilde);
+  if (plan_.transfer.figures().keeps_velocity) {
+    for (std::size_t n = 0; n < kNeighbours; ++n) {
+      const auto block = static_cast<std::size_t>(neighbours[n]);
+      bar[n] = neighbours[n] < 0 ? nullptr : state.before_forces.block(block);
+    }
+    load_arena(mine.before_arena.data(), rows, bar);
+  }
   return two;
 }
 
@@ -308,9 +321,10 @@ void Stepper<Real>::finish(State<Real>& state, Real) {
   }
   counters.max_speed = std::sqrt(static_cast<double>(all.speed_squared));
   counters.max_gradient = std::sqrt(static_cast<double>(all.gradient_squared));
-  const Real shift = static_cast<Real>(plan_.transfer.base_shift);
-  const bool outside =
-      std::floor(all.lowest - shift) < kLowestBase || std::floor(all.highest - shift) > kHighestBase;
+  const StencilFigures& nodes = plan_.transfer.nodes();
+  const Real shift = static_cast<Real>(nodes.base_shift);
+  const bool outside = std::floor(all.lowest - shift) < Real(nodes.lowest_base) ||
+                       std::floor(all.highest - shift) > Real(nodes.highest_base);
   counters.order_due = outside ? 1 : 0;
   std::int64_t runs = 0;
   for (const std::size_t n : runs_) runs += static_cast<std::int64_t>(n);
@@ -329,7 +343,7 @@ std::size_t Stepper<Real>::bytes() const {
 template <class Real>
 std::size_t Stepper<Real>::scratch_bytes() const {
   const std::size_t per_thread =
-      sizeof(Real) * (2 * kArenaValues + kChunk * (kStrainComponents + 3 + kAffineComponents + 1));
+      sizeof(Real) * (3 * kArenaValues + kChunk * (kStrainComponents + 6 + kAffineComponents + 1));
   return order_.scratch_bytes() + scratch_.size() * per_thread;
 }
 

@@ -9,7 +9,20 @@ const char* limit_name(Limit limit) {
   return kNames[static_cast<int>(limit)];
 }
 
-StepSize choose_step(const StepLimits& limits, const TransferConstants& transfer, double spacing,
+namespace {
+
+/// Cells that the pulse of a particle alone may cross in a step; 0 where nothing bounds it.
+double isolated_cells(const TransferChoice& transfer) {
+  const StencilFigures& nodes = transfer.nodes();
+  const bool moments = transfer.figures().force == Force::kMoments && nodes.constant_d;
+  const double h = moments ? nodes.inverse_d : nodes.feedback;
+  if (!std::isfinite(h)) return 0.0;
+  return transfer.keeps_affine() ? 2.0 / std::sqrt(2.0 * h - nodes.inverse_d) : std::sqrt(2.0 / h);
+}
+
+}  // namespace
+
+StepSize choose_step(const StepLimits& limits, const TransferChoice& transfer, double spacing,
                      const Counters& counters, double remaining) {
   StepSize step{limits.max_step, Limit::kMaxStep, limits.max_step};
   const auto bound = [&step](double dt, Limit limit) {
@@ -18,10 +31,10 @@ StepSize choose_step(const StepLimits& limits, const TransferConstants& transfer
   const double speed = std::max(counters.max_speed, limits.solid_speed);
   if (speed > 0.0) bound(limits.cfl * spacing / speed, Limit::kVelocity);
   if (counters.max_gradient > 0.0) bound(limits.strain / counters.max_gradient, Limit::kStrain);
+  const double feedback = isolated_cells(transfer);
   for (const auto& set : limits.sets) {
     bound(limits.sound * spacing / set.sound_speed, Limit::kSound);
-    const double feedback = 2.0 / std::sqrt(2.0 * transfer.inverse_d - transfer.inverse_d);
-    bound(limits.isolated * feedback * spacing / set.dilation_speed, Limit::kIsolated);
+    if (feedback > 0.0) bound(limits.isolated * feedback * spacing / set.dilation_speed, Limit::kIsolated);
   }
   step.allowed = step.dt;
   if (std::isfinite(remaining)) {

@@ -4,7 +4,8 @@
 //   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2, margins in
 //   docs/math.md isolated  a particle alone must not feed its own pulse: dt <= 2 dx / (a sqrt(2h - D^-1)), a^2
 //   = (3 lambda + 2 mu)/rho;
-//             in the MLS form h = D^-1 (after Bai and Schroeder 2022)
+//             h = D^-1 with forces by moments, the stencil's feedback with gradients, D^-1 left out without C
+//             (after Bai and Schroeder 2022); a linear stencil has no such limit and is not safe
 //   strain    dt |grad v| <= `strain`, which keeps det(I + dt grad v) > 0
 //   max_step  the scene's own bound
 //   frame     the step ends on the frame; steps of a frame's remainder are equal
@@ -26,7 +27,7 @@ struct StepSize {
 
 /// The next step: the shortest limit, shortened so that whole equal steps fill `remaining` seconds (infinity:
 /// no frame).
-StepSize choose_step(const StepLimits& limits, const TransferConstants& transfer, double spacing,
+StepSize choose_step(const StepLimits& limits, const TransferChoice& transfer, double spacing,
                      const Counters& counters, double remaining);
 
 }  // namespace repose

@@ -1,5 +1,7 @@
 #include "engine/step/transfer_stages.h"
 
+#include <algorithm>
+
 namespace repose {
 namespace {
 
@@ -21,13 +23,13 @@ MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, Chunk<
 }  // namespace
 
 template <class Real>
-Lattice<Real> make_lattice(const State<Real>& state, const TransferConstants& transfer) {
+Lattice<Real> make_lattice(const State<Real>& state, const TransferChoice& transfer) {
   Lattice<Real> lattice{};
   lattice.spacing = static_cast<Real>(state.spacing);
   lattice.flat_axis = state.topology.flat_axis;
   for (int axis = 0; axis < 3; ++axis) {
     const bool flat = axis == state.topology.flat_axis;
-    lattice.axis_scale[axis] = flat ? Real(0) : static_cast<Real>(transfer.inverse_d / state.spacing);
+    lattice.axis_scale[axis] = flat ? Real(0) : static_cast<Real>(transfer.nodes().inverse_d / state.spacing);
   }
   return lattice;
 }
@@ -41,8 +43,11 @@ ParticlePass<Real> stress_pass(const MaterialRuntime<Real>& material) {
 template <class Real>
 ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice) {
   const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].scatter;
-  return {{"scatter", "", {"position", "velocity", "affine", "stress"}, {"node mass", "node momentum"}},
-          [kernel, lattice](Chunk<Real>& chunk) {
+  const auto kept_stretching = static_cast<Real>(plan.transfer.kept_stretching);
+  PassDescription description{
+      "scatter", "", {"position", "velocity", "stress"}, {"node mass", "node momentum"}};
+  if (plan.transfer.keeps_affine()) description.reads.push_back("affine");
+  return {description, [kernel, lattice, kept_stretching](Chunk<Real>& chunk) {
             ScatterInput<Real> in{};
             in.particles = chunk.particles;
             for (int k = 0; k < kStrainComponents; ++k) {
@@ -50,6 +55,7 @@ ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>&
             }
             in.mass = static_cast<Real>(chunk.set.particle_mass);
             in.impulse_volume = static_cast<Real>(static_cast<double>(chunk.dt) * chunk.set.particle_volume);
+            in.kept_stretching = kept_stretching;
             in.lattice = lattice;
             chunk.runs += kernel(in, chunk.scratch.arena.data(), chunk.rows);
           }};
@@ -57,38 +63,58 @@ ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>&
 
 template <class Real>
 ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice) {
-  const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].gather;
-  return {{"gather", "", {"position", "node velocity"}, {"velocity", "affine", "moving velocity", "gradient"}},
-          [kernel, lattice](Chunk<Real>& chunk) {
+  const TransferChoice choice = plan.transfer;
+  const auto kernel = plan.kernels->transfer[choice.stencil][choice.transfer].gather;
+  const auto interpolate = plan.kernels->stencil[choice.stencil].interpolate;
+  const bool keeps_velocity = choice.figures().keeps_velocity;
+  PassDescription description{
+      "gather", "", {"position", "node velocity"}, {"velocity", "moving velocity", "gradient"}};
+  if (choice.keeps_affine()) description.writes.push_back("affine");
+  if (keeps_velocity) description.reads.push_back("node velocity before forces");
+  return {description, [=](Chunk<Real>& chunk) {
+            Scratch<Real>& scratch = chunk.scratch;
             GatherInput<Real> in{};
             in.particles = chunk.particles;
             in.lattice = lattice;
-            const auto target = [&](bool scratch) {
-              for (std::size_t axis = 0; axis < 3; ++axis) {
-                in.velocity[axis] =
-                    scratch ? chunk.scratch.velocity.data() + axis * kChunk : chunk.particles.velocity[axis];
-              }
-              for (std::size_t k = 0; k < kAffineComponents; ++k) {
-                in.affine[k] = scratch ? chunk.scratch.affine.data() + k * kChunk : chunk.particles.affine[k];
-              }
+            in.kept_velocity = static_cast<Real>(choice.kept_velocity);
+            if (keeps_velocity) {
+              Real* const before[3] = {scratch.before.data(), scratch.before.data() + kChunk,
+                                       scratch.before.data() + 2 * kChunk};
+              interpolate(in.particles, lattice.flat_axis, scratch.before_arena.data(), before);
+              std::copy_n(before, 3, in.before);
+            }
+            // What moves a particle is what it keeps, unless the transfer or friction tell two velocities.
+            const auto keep = [&] {
+              std::copy_n(chunk.particles.velocity, 3, in.velocity);
+              std::copy_n(chunk.particles.affine, kAffineComponents, in.affine);
             };
-            // What moves the particle first; where it keeps another velocity, the first is needed beside it.
-            target(chunk.two_velocities);
-            kernel(in, chunk.scratch.arena.data());
-            for (int axis = 0; axis < 3; ++axis) chunk.moving_velocity[axis] = in.velocity[axis];
-            for (int k = 0; k < kAffineComponents; ++k) chunk.moving_gradient[k] = in.affine[k];
-            if (!chunk.two_velocities) return;
-            target(false);
-            kernel(in, chunk.scratch.kept_arena.data());
+            const bool two = chunk.two_velocities;
+            if (!two) keep();
+            const bool apart = two || keeps_velocity, gradient_apart = two || choice.separate_gradient();
+            for (std::size_t axis = 0; apart && axis < 3; ++axis) {
+              in.moving[axis] = scratch.velocity.data() + axis * kChunk;
+            }
+            for (std::size_t k = 0; gradient_apart && k < kAffineComponents; ++k) {
+              in.gradient[k] = scratch.affine.data() + k * kChunk;
+            }
+            kernel(in, scratch.arena.data());
+            std::copy_n(apart ? in.moving : in.velocity, 3, chunk.moving_velocity);
+            std::copy_n(gradient_apart ? in.gradient : in.affine, kAffineComponents, chunk.moving_gradient);
+            if (!two) return;
+            keep();
+            std::fill_n(in.moving, 3, nullptr);
+            std::fill_n(in.gradient, kAffineComponents, nullptr);
+            kernel(in, scratch.kept_arena.data());
           }};
 }
 
 template <class Real>
 ParticlePass<Real> advance_pass(const StepPlan<Real>& plan) {
   const auto kernel = plan.kernels->advance;
-  return {{"advance", "", {"position", "moving velocity"}, {"position"}}, [kernel](Chunk<Real>& chunk) {
+  return {{"advance", "", {"position", "velocity", "moving velocity", "gradient"}, {"position"}},
+          [kernel](Chunk<Real>& chunk) {
             const Real per_cell = static_cast<Real>(static_cast<double>(chunk.dt) / chunk.spacing);
-            kernel(chunk.particles, chunk.moving_velocity, per_cell, chunk.motion);
+            kernel(chunk.particles, chunk.moving_velocity, chunk.moving_gradient, per_cell, chunk.motion);
           }};
 }
 
@@ -114,15 +140,31 @@ NodePass<Real> normalize_pass(const StepPlan<Real>& plan) {
           }};
 }
 
+template <class Real>
+OrderPass<Real> before_forces_room_pass() {
+  return {{"room for velocity before forces", "grid.transfer", {"topology"}, {}},
+          [](State<Real>& state) { state.before_forces.resize(state.grid.size()); }};
+}
+
+template <class Real>
+NodePass<Real> before_forces_pass() {
+  return {{"velocity before forces", "grid.transfer", {"node velocity"}, {"node velocity before forces"}},
+          [](NodeBlock<Real>& block) {
+            std::copy_n(block.nodes, kBlockValues, block.state.before_forces.block(block.block));
+          }};
+}
+
 #define REPOSE_INSTANTIATE(Real)                                                         \
-  template Lattice<Real> make_lattice(const State<Real>&, const TransferConstants&);     \
+  template Lattice<Real> make_lattice(const State<Real>&, const TransferChoice&);        \
   template ParticlePass<Real> stress_pass(const MaterialRuntime<Real>&);                 \
   template ParticlePass<Real> scatter_pass(const StepPlan<Real>&, const Lattice<Real>&); \
   template ParticlePass<Real> gather_pass(const StepPlan<Real>&, const Lattice<Real>&);  \
   template ParticlePass<Real> advance_pass(const StepPlan<Real>&);                       \
   template ParticlePass<Real> trial_pass(const MaterialRuntime<Real>&);                  \
   template ParticlePass<Real> project_pass(const MaterialRuntime<Real>&);                \
-  template NodePass<Real> normalize_pass(const StepPlan<Real>&);
+  template NodePass<Real> normalize_pass(const StepPlan<Real>&);                         \
+  template OrderPass<Real> before_forces_room_pass();                                    \
+  template NodePass<Real> before_forces_pass();
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)
 #undef REPOSE_INSTANTIATE

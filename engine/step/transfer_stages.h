@@ -18,7 +18,7 @@ struct MaterialRuntime {
 };
 
 template <class Real>
-Lattice<Real> make_lattice(const State<Real>& state, const TransferConstants& transfer);
+Lattice<Real> make_lattice(const State<Real>& state, const TransferChoice& transfer);
 
 template <class Real>
 ParticlePass<Real> stress_pass(const MaterialRuntime<Real>& material);
@@ -37,5 +37,11 @@ ParticlePass<Real> project_pass(const MaterialRuntime<Real>& material);
 /// p -> v = p/m, and which nodes are active.
 template <class Real>
 NodePass<Real> normalize_pass(const StepPlan<Real>& plan);
+
+/// For transfers whose particles keep velocity: room for the nodes' velocity before forces, and keeping it.
+template <class Real>
+OrderPass<Real> before_forces_room_pass();
+template <class Real>
+NodePass<Real> before_forces_pass();
 
 }  // namespace repose

@@ -168,6 +168,11 @@ template <class T>
 REPOSE_INLINE bool any_first(Mask<T> mask, std::size_t count) {
   return !hn::AllFalse(PackTag<T>(), hn::And(mask.raw, hn::FirstN(PackTag<T>(), count)));
 }
+/// The first `count` lanes.
+template <class T>
+REPOSE_INLINE Mask<T> first_lanes(std::size_t count) {
+  return {hn::FirstN(PackTag<T>(), count)};
+}
 template <class T>
 REPOSE_INLINE T largest(Pack<T> a) {
   return hn::GetLane(hn::MaxOfLanes(PackTag<T>(), a.raw));

@@ -24,6 +24,7 @@ void advance(const ParticleSpan<T>& particles, const T* const velocity[3], const
   P speed(motion.speed_squared), steepest(motion.gradient_squared), low(motion.lowest), high(motion.highest);
   const P scale(cells_per_velocity);
   for (const auto [first, lanes] : packs<T>(particles.count)) {
+    const auto filled = first_lanes<T>(lanes);
     P square(T(0)), entries(T(0));
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
@@ -32,8 +33,8 @@ void advance(const ParticleSpan<T>& particles, const T* const velocity[3], const
       const P x = fma(scale, P::load_first(velocity[axis] + first, lanes),
                       P::load_first(particles.position[axis] + first, lanes));
       x.store_first(particles.position[axis] + first, lanes);
-      low = min(low, x);  // lanes beyond the last particle hold 0, which lies in every block
-      high = max(high, x);
+      low = min(low, select(filled, x, low));
+      high = max(high, select(filled, x, high));
     }
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) {

@@ -69,10 +69,12 @@ struct GatherInput {
 /// What moving a span of particles did to it.
 template <class Real>
 struct Motion {
-  Real speed_squared = 0;     ///< largest |v|^2, m^2/s^2
-  Real gradient_squared = 0;  ///< largest |grad v|^2 (Frobenius), 1/s^2
-  Real lowest = 0;            ///< least and largest position component, cells from the block's origin
-  Real highest = 0;
+  Real speed_squared = 0;       ///< largest |v|^2, m^2/s^2
+  Real gradient_squared = 0;    ///< largest |grad v|^2 (Frobenius), 1/s^2
+  Real lowest = kInEveryBlock;  ///< least and largest position component, cells from the block's origin
+  Real highest = kInEveryBlock;
+
+  static constexpr Real kInEveryBlock = 2;  ///< a coordinate that is no drift, whatever the stencil
 };
 
 /// One material's passes over a span, all on the strain channel in place.
