@@ -61,6 +61,17 @@ bool in_order(const std::uint8_t* cells, const std::uint32_t* ids, std::size_t f
   return wrong == 0;
 }
 
+/// Sorts the keys of each cell; cell c ends before ends[c], and begins where the one before it ends.
+void sort_cells(std::uint64_t* keys, const std::uint32_t* ends) {
+  std::uint64_t* first = keys;
+  for (std::size_t cell = 0; cell < kBases; ++cell) {
+    std::uint64_t* const last = keys + ends[cell];
+    // Most of a cell's particles were in this order before.
+    if (!std::is_sorted(first, last)) std::sort(first, last);
+    first = last;
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -257,13 +268,7 @@ void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::siz
     if (cells[p] < kMoves) put(p, cells[p]);
   }
   for_each_mover([&](std::uint32_t p) { put(p, cells[p] - kMoves); });
-  std::uint64_t* cell_begin = keys;
-  for (std::size_t cell = 0; cell < kBases; ++cell) {
-    std::uint64_t* const cell_end = keys + next[cell];
-    // Most of a cell's particles were in this order before.
-    if (!std::is_sorted(cell_begin, cell_end)) std::sort(cell_begin, cell_end);
-    cell_begin = cell_end;
-  }
+  sort_cells(keys, next.data());
 }
 
 template <class Real>
