@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "apps/repose/command.h"
+#include "apps/repose/measure.h"
 #include "engine/step/time_step.h"
 
 namespace repose {
@@ -36,8 +37,33 @@ void print_effects(const Scene& scene) {
   }
 }
 
-void print_forecast(const Scene& scene, const Simulation& simulation) {
+/// Memory, in the parts that it is made of. What setting up took at its peak has been seen; what steps will add
+/// is the grid's growth. `process` bytes were there before.
+void print_memory(const Simulation& simulation, double process) {
   const MemoryUse memory = simulation.memory();
+  const auto particles = static_cast<double>(memory.particle_bytes),
+             order = static_cast<double>(memory.order_bytes),
+             scratch = static_cast<double>(memory.scratch_bytes), grid = static_cast<double>(memory.grid_bytes);
+  const double growth = grid;  // material that spreads: room for twice the blocks
+  const double running = process + particles + order + scratch + grid + growth;
+  const auto setting_up = static_cast<double>(peak_rss_bytes());
+  const auto line = [](const char* what, double bytes, const char* more) {
+    std::printf("    %-18s%8.1f MB%s\n", what, 1e-6 * bytes, more);
+  };
+  char blocks[64];
+  std::snprintf(blocks, sizeof blocks, "   %zu blocks at the start", memory.blocks);
+  std::printf("  memory              %.1f MB at the peak\n", 1e-6 * std::max(running, setting_up));
+  line("setting up", setting_up, "   measured; all of the below but growth, and the seeds");
+  line("running", running, "   the sum of");
+  line("  process", process, "   program and libraries");
+  line("  particles", particles, "");
+  line("  order", order, "");
+  line("  threads", scratch, "");
+  line("  grid", grid, blocks);
+  line("  grid's growth", growth, "   allowed for: as much again");
+}
+
+void print_forecast(const Scene& scene, const Simulation& simulation, double process) {
   const auto particles = static_cast<double>(simulation.particles());
   double dt = scene.time.max_step;
   for (const BodyDescription& body : scene.bodies) {
@@ -51,9 +77,7 @@ void print_forecast(const Scene& scene, const Simulation& simulation) {
   std::printf("\nforecast\n");
   std::printf("  particles           %zu\n", simulation.particles());
   std::printf("  bytes per particle  %zu\n", bytes_per_particle(scene));
-  std::printf("  memory              %.1f MB particles and order, %.1f MB grid (%zu blocks at the start)\n",
-              1e-6 * particles * static_cast<double>(bytes_per_particle(scene)),
-              1e-6 * static_cast<double>(memory.grid_bytes), memory.blocks);
+  print_memory(simulation, process);
   std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
   std::printf("  time                about %.0f s on %d thread%s\n",
               steps * particles * kNanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
@@ -67,6 +91,7 @@ int plan_command(const SceneArguments& arguments) {
   if (!scene) return fail(scene.error());
   auto options = simulation_options(arguments);
   if (!options) return fail(options.error());
+  const auto process = static_cast<double>(resident_bytes());
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
   std::printf("%s: dx %g m, %s precision, %s\n", scene->name.c_str(), scene->grid.spacing,
@@ -74,7 +99,7 @@ int plan_command(const SceneArguments& arguments) {
               target_name((*simulation)->target()));
   print_effects(*scene);
   print_passes(**simulation);
-  print_forecast(*scene, **simulation);
+  print_forecast(*scene, **simulation, process);
   return 0;
 }
 

@@ -61,6 +61,17 @@ bool in_order(const std::uint8_t* cells, const std::uint32_t* ids, std::size_t f
   return wrong == 0;
 }
 
+/// Sorts the keys of each cell; cell c ends before ends[c], and begins where the one before it ends.
+void sort_cells(std::uint64_t* keys, const std::uint32_t* ends) {
+  std::uint64_t* first = keys;
+  for (std::size_t cell = 0; cell < kBases; ++cell) {
+    std::uint64_t* const last = keys + ends[cell];
+    // Most of a cell's particles were in this order before.
+    if (!std::is_sorted(first, last)) std::sort(first, last);
+    first = last;
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -171,26 +182,29 @@ void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k,
 /// Gives each new owner its share of the range.
 template <class Real>
 void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Threads& threads) {
+  Buffers& buffers = buffers_[k];
   const std::size_t owners = state.grid.owners().size();
-  std::vector<std::uint32_t>& begin = buffers_[k].begin;
+  std::vector<std::uint32_t>&begin = buffers.begin, &arrivals = buffers.arrivals_begin;
   begin.assign(owners + 1, 0);
+  arrivals.assign(owners + 1, 0);
   threads.for_each(
       owners,
       [&](std::size_t owner) {
-        const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
-        std::uint32_t count = 0;
-        if (source >= 0) {
-          const auto old = static_cast<std::size_t>(source);
-          count = state.sets[k].begin[old + 1] - state.sets[k].begin[old] -
-                  buffers_[k].old[old].departures[kNeighbours];
-        }
         for_each_arrival(state, k, owner, [&](std::size_t first, std::size_t last) {
-          count += static_cast<std::uint32_t>(last - first);
+          arrivals[owner + 1] += static_cast<std::uint32_t>(last - first);
         });
-        begin[owner + 1] = count;
+        const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
+        begin[owner + 1] = arrivals[owner + 1];
+        if (source < 0) return;
+        const auto old = static_cast<std::size_t>(source);
+        begin[owner + 1] +=
+            state.sets[k].begin[old + 1] - state.sets[k].begin[old] - buffers.old[old].departures[kNeighbours];
       },
       64);
-  for (std::size_t owner = 0; owner < owners; ++owner) begin[owner + 1] += begin[owner];
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    begin[owner + 1] += begin[owner];
+    arrivals[owner + 1] += arrivals[owner];
+  }
   REPOSE_ASSERT(begin[owners] == state.sets[k].count);
 }
 
@@ -198,83 +212,101 @@ void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Thread
 template <class Real>
 void BlockOrder<Real>::sort_owner(const State<Real>& state, std::size_t k, std::size_t owner) {
   Buffers& buffers = buffers_[k];
-  const ParticleSet<Real>& set = state.sets[k];
   const std::size_t begin = buffers.begin[owner], count = buffers.begin[owner + 1] - begin;
   const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
   std::size_t first = 0, last = 0;  // who was here before
+  bool in_order = false;
   if (source >= 0) {
-    first = set.begin[static_cast<std::size_t>(source)];
-    last = set.begin[static_cast<std::size_t>(source) + 1];
+    const auto old = static_cast<std::size_t>(source);
+    first = state.sets[k].begin[old];
+    last = state.sets[k].begin[old + 1];
+    in_order = buffers.old[old].in_order;
   }
   std::uint32_t* const place = buffers.permutation.data() + begin;
-  if (source >= 0 && count == last - first && buffers.old[static_cast<std::size_t>(source)].in_order) {
+  if (in_order && buffers.arrivals_begin[owner] == buffers.arrivals_begin[owner + 1]) {
     for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(first + i);
     return;
   }
+  auto& keys = keys_[static_cast<std::size_t>(Threads::index())];
+  if (keys.size() < count) keys.resize(count);
+  collect(state, k, owner, first, last);
+  for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(keys[i]);
+}
+
+/// Fills the thread's keys (id, old place), sorted by cell and key, from the old range [first, last) of the
+/// owner's block and from the arrivals.
+template <class Real>
+void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::size_t owner, std::size_t first,
+                               std::size_t last) {
+  Buffers& buffers = buffers_[k];
   const std::uint8_t* const cells = buffers.cell.data();
+  const std::uint32_t* const ids = state.sets[k].id.data();
+  std::uint32_t* const arrivals = buffers.arrivals.data();
+  const std::size_t room = buffers.arrivals.size();
+  std::size_t arrival = buffers.arrivals_begin[owner];
+  const auto for_each_mover = [&](auto visit) {
+    for_each_arrival(state, k, owner, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) visit(buffers.movers()[i]);
+    });
+  };
+  for_each_mover([&](std::uint32_t p) {
+    __builtin_prefetch(cells + p);
+    __builtin_prefetch(ids + p);
+    if (arrival < room) arrivals[arrival++] = p;
+  });
   std::array<std::uint32_t, 2 * kMoves> next{};  // per cell; from kMoves on, who leaves
   for (std::size_t p = first; p < last; ++p) ++next[cells[p]];
-  for_each_arrival(state, k, owner, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) ++next[cells[buffers.movers()[i]] - kMoves];
-  });
+  for_each_mover([&](std::uint32_t p) { ++next[cells[p] - kMoves]; });
   std::uint32_t sum = 0;
   for (std::size_t cell = 0; cell < kBases; ++cell) sum += std::exchange(next[cell], sum);
 
-  auto& keys = keys_[static_cast<std::size_t>(Threads::index())];
-  if (keys.size() < count) keys.resize(count);
+  std::uint64_t* const keys = keys_[static_cast<std::size_t>(Threads::index())].data();
   const auto put = [&](std::size_t p, std::size_t cell) {
-    keys[next[cell]++] = std::uint64_t{set.id[p]} << 32 | p;
+    keys[next[cell]++] = std::uint64_t{ids[p]} << 32 | p;
   };
   for (std::size_t p = first; p < last; ++p) {
     if (cells[p] < kMoves) put(p, cells[p]);
   }
-  for_each_arrival(state, k, owner, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      const std::size_t p = buffers.movers()[i];
-      put(p, cells[p] - kMoves);
-    }
-  });
-  std::uint64_t* cell_begin = keys.data();
-  for (std::size_t cell = 0; cell < kBases; ++cell) {
-    std::uint64_t* const cell_end = keys.data() + next[cell];
-    // Most of a cell's particles were in this order before.
-    if (!std::is_sorted(cell_begin, cell_end)) std::sort(cell_begin, cell_end);
-    cell_begin = cell_end;
-  }
-  for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(keys[i]);
+  for_each_mover([&](std::uint32_t p) { put(p, cells[p] - kMoves); });
+  sort_cells(keys, next.data());
 }
 
 template <class Real>
 void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
                                      const Locator<Real>& locator) const {
-  constexpr std::size_t kPiece = 4096;
-  const std::size_t pieces = (set.count + kPiece - 1) / kPiece;
+  const std::size_t owners = buffers.begin.size() - 1, room = buffers.arrivals.size();
   const std::uint32_t* const from = buffers.permutation.data();
-  const auto move = [&](AlignedArray<Real>& channel, const auto& value) {
-    const Real* const old = channel.data();
-    Real* const moved = buffers.spare.data();
-    threads.for_each(pieces, [&](std::size_t piece) {
-      const std::size_t end = std::min(set.count, (piece + 1) * kPiece);
-      for (std::size_t p = piece * kPiece; p < end; ++p) moved[p] = value(old[from[p]]);
-    });
+  const auto move = [&](const auto* old, auto* moved, const auto& value) {
+    threads.for_each(
+        owners,
+        [&](std::size_t owner) {
+          // What the next block but one waits for from far away; what is near comes by itself.
+          const std::size_t ahead = std::min(owner + 2, owners - 1);
+          const std::size_t last = std::min<std::size_t>(room, buffers.arrivals_begin[ahead + 1]);
+          for (std::size_t i = buffers.arrivals_begin[ahead]; i < last; ++i) {
+            __builtin_prefetch(old + buffers.arrivals[i]);
+          }
+          const std::size_t end = buffers.begin[owner + 1];
+          for (std::size_t p = buffers.begin[owner]; p < end; ++p) moved[p] = value(old[from[p]]);
+        },
+        8);
+  };
+  const auto move_real = [&](AlignedArray<Real>& channel, const auto& value) {
+    move(channel.data(), buffers.spare.data(), value);
     swap(channel, buffers.spare);
   };
-  const auto same = [](Real value) { return value; };
+  const auto same = [](auto value) { return value; };
   for (auto& channel : set.position) {
-    move(channel, [&](Real x) { return x - static_cast<Real>(kBlockSide * locator.blocks_away(x)); });
+    move_real(channel, [&](Real x) { return x - static_cast<Real>(kBlockSide * locator.blocks_away(x)); });
   }
-  for (auto& channel : set.velocity) move(channel, same);
+  for (auto& channel : set.velocity) move_real(channel, same);
   for (auto& channel : set.affine) {
-    if (set.keeps_affine) move(channel, same);
+    if (set.keeps_affine) move_real(channel, same);
   }
-  for (auto& channel : set.strain) move(channel, same);
-  for (auto& channel : set.extra) move(channel.values, same);
+  for (auto& channel : set.strain) move_real(channel, same);
+  for (auto& channel : set.extra) move_real(channel.values, same);
   // Ids last: the permutation, not needed any more, becomes them.
-  std::uint32_t* const ids = buffers.permutation.data();
-  threads.for_each(pieces, [&](std::size_t piece) {
-    const std::size_t end = std::min(set.count, (piece + 1) * kPiece);
-    for (std::size_t p = piece * kPiece; p < end; ++p) ids[p] = set.id[ids[p]];
-  });
+  move(set.id.data(), buffers.permutation.data(), same);
   swap(set.id, buffers.permutation);
 }
 
@@ -290,6 +322,7 @@ bool BlockOrder<Real>::order(State<Real>& state, Threads& threads, const Ownersh
     buffers.cell.reserve_uninitialized(state.sets[k].count);
     buffers.spare.reserve_uninitialized(state.sets[k].count);
     buffers.permutation.reserve_uninitialized(state.sets[k].count);
+    buffers.arrivals.reserve_uninitialized(state.sets[k].count / 8);
     threads.for_each(old_owners, [&](std::size_t owner) { classify(state.sets[k], owner, locator, buffers); });
   }
   const bool new_grid = update_grid(state);
@@ -315,6 +348,7 @@ std::size_t BlockOrder<Real>::bytes() const {
                     (old_blocks_.capacity() + new_blocks_.capacity()) * sizeof(Index3);
   for (const Buffers& buffers : buffers_) {
     sum += buffers.cell.bytes() + buffers.spare.bytes() + buffers.permutation.bytes() +
+           buffers.arrivals.bytes() + buffers.arrivals_begin.capacity() * sizeof(std::uint32_t) +
            buffers.old.capacity() * sizeof(OldOwner) + buffers.begin.capacity() * sizeof(std::uint32_t);
   }
   return sum;

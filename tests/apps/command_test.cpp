@@ -38,6 +38,9 @@ TEST_F(Command, Bench_WritesEveryFigure) {
   EXPECT_LE(phases, json["ns_per_particle_step"].asDouble());
   EXPECT_GE(json["bytes_per_particle"].asDouble(), 21 * 4 + 4) << "x, v, C, strain and id";
   EXPECT_GT(json["grid_bytes"].asInt64(), 0);
+  EXPECT_NEAR(json["grid_bytes_per_block"].asDouble() * json["blocks"].asDouble(),
+              json["grid_bytes"].asDouble(), 1.0);
+  EXPECT_GT(json["scratch_bytes"].asInt64(), 2 * 2 * 8 * 8 * 8 * 4 * 4) << "two arenas a thread";
   EXPECT_GT(json["peak_rss_bytes"].asInt64(), json["grid_bytes"].asInt64());
   EXPECT_EQ(json["hash"].asString().size(), 16u);
 }
