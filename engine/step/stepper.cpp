@@ -127,6 +127,22 @@ void Stepper<Real>::scatter(State<Real>& state, Real dt) {
   }
 }
 
+namespace {
+
+/// Kernels find places in an arena by base nodes and trust them; a NaN has none.
+template <class Real>
+[[maybe_unused]] bool within_reach(const ParticleSpan<Real>& particles, const StencilFigures& nodes) {
+  for (std::size_t p = 0; p < particles.count; ++p) {
+    for (const Real* x : particles.position) {
+      const Real base = std::floor(x[p] - static_cast<Real>(nodes.base_shift));
+      if (!(base >= Real(nodes.lowest_base) && base <= Real(nodes.highest_base))) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 template <class Real>
 void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt) {
   Real* arena = scratch().arena.data();
@@ -134,6 +150,7 @@ void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::si
   std::uint64_t rows = 0;
   std::size_t runs = 0;
   for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
+    REPOSE_VALIDATE(within_reach(chunk.particles, plan_.transfer.nodes()));
     for (const auto& pass : plan_.scatter[k]) pass.run(chunk);
     rows |= chunk.rows;
     runs += chunk.runs;
