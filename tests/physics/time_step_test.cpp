@@ -27,7 +27,7 @@ StepLimits limits() {
 }
 
 StepSize choose(const StepLimits& given, const Counters& counters, double remaining = kNoFrame) {
-  return choose_step(given, TransferConstants{}, kSpacing, counters, remaining);
+  return choose_step(given, TransferChoice{}, kSpacing, counters, remaining);
 }
 
 TEST(TimeStep, MatterAtRest_SoundBinds) {
