@@ -208,7 +208,7 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
   plan.nodes.push_back(normalize_pass(plan));  // v* = p/m
   if (plan.transfer.figures().keeps_velocity) {
     plan.order.push_back(before_forces_room_pass<Real>());
-    plan.nodes.push_back(before_forces_pass<Real>());
+    plan.nodes.push_back(before_forces_pass(plan));
   }
   for_each_effect(scene.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
     if (effect.on()) effect.add_to_nodes(assembly);

@@ -113,9 +113,12 @@ template <class Real>
 void Stepper<Real>::scatter(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kScatter);
   constexpr std::size_t kGrain = 64;
+  const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
   threads_.for_each((state.grid.size() + kGrain - 1) / kGrain, [&](std::size_t piece) {
     const std::size_t first = piece * kGrain, blocks = std::min(kGrain, state.grid.size() - first);
-    std::memset(state.nodes.block(first), 0, blocks * kBlockValues * sizeof(Real));
+    const std::size_t bytes = blocks * kBlockValues * sizeof(Real);
+    std::memset(state.nodes.block(first), 0, bytes);
+    if (keeps_velocity) std::memset(state.before_forces.block(first), 0, bytes);
   });
   runs_.assign(state.grid.owners().size(), 0);
   for (int colour = 0; colour < 8; ++colour) {
@@ -145,8 +148,10 @@ template <class Real>
 
 template <class Real>
 void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt) {
-  Real* arena = scratch().arena.data();
-  std::memset(arena, 0, kArenaValues * sizeof(Real));
+  Scratch<Real>& mine = scratch();
+  const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
+  std::memset(mine.arena.data(), 0, kArenaValues * sizeof(Real));
+  if (keeps_velocity) std::memset(mine.before_arena.data(), 0, kArenaValues * sizeof(Real));
   std::uint64_t rows = 0;
   std::size_t runs = 0;
   for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
@@ -156,11 +161,15 @@ void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::si
     runs += chunk.runs;
   });
   const auto neighbours = state.grid.neighbours(owner);
-  Real* blocks[kNeighbours];
-  for (std::size_t n = 0; n < kNeighbours; ++n) {
-    blocks[n] = neighbours[n] < 0 ? nullptr : state.nodes.block(static_cast<std::size_t>(neighbours[n]));
-  }
-  plan_.kernels->stencil[plan_.transfer.stencil].add_arena(arena, rows, blocks);
+  const auto add = [&](const Real* arena, NodeField<Real>& field) {
+    Real* blocks[kNeighbours];
+    for (std::size_t n = 0; n < kNeighbours; ++n) {
+      blocks[n] = neighbours[n] < 0 ? nullptr : field.block(static_cast<std::size_t>(neighbours[n]));
+    }
+    plan_.kernels->stencil[plan_.transfer.stencil].add_arena(arena, rows, blocks);
+  };
+  add(mine.arena.data(), state.nodes);
+  if (keeps_velocity) add(mine.before_arena.data(), state.before_forces);
   state.rows_touched[owner] = rows;
   runs_[owner] = runs;
 }

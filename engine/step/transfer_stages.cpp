@@ -44,10 +44,12 @@ template <class Real>
 ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice) {
   const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].scatter;
   const auto kept_stretching = static_cast<Real>(plan.transfer.kept_stretching);
+  const bool keeps_velocity = plan.transfer.figures().keeps_velocity;
   PassDescription description{
       "scatter", "", {"position", "velocity", "stress"}, {"node mass", "node momentum"}};
   if (plan.transfer.keeps_affine()) description.reads.push_back("affine");
-  return {description, [kernel, lattice, kept_stretching](Chunk<Real>& chunk) {
+  if (keeps_velocity) description.writes.push_back("node momentum before forces");
+  return {description, [=](Chunk<Real>& chunk) {
             ScatterInput<Real> in{};
             in.particles = chunk.particles;
             for (int k = 0; k < kStrainComponents; ++k) {
@@ -58,6 +60,10 @@ ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>&
             in.kept_stretching = kept_stretching;
             in.lattice = lattice;
             chunk.runs += kernel(in, chunk.scratch.arena.data(), chunk.rows);
+            if (!keeps_velocity) return;
+            // Stress is a force: what particles keep their velocity against must not have felt it.
+            in.impulse_volume = Real(0);
+            kernel(in, chunk.scratch.before_arena.data(), chunk.rows);
           }};
 }
 
@@ -147,10 +153,15 @@ OrderPass<Real> before_forces_room_pass() {
 }
 
 template <class Real>
-NodePass<Real> before_forces_pass() {
-  return {{"velocity before forces", "grid.transfer", {"node velocity"}, {"node velocity before forces"}},
-          [](NodeBlock<Real>& block) {
-            std::copy_n(block.nodes, kBlockValues, block.state.before_forces.block(block.block));
+NodePass<Real> before_forces_pass(const StepPlan<Real>& plan) {
+  const auto kernel = plan.kernels->normalize;
+  const Real least_mass = plan.least_mass;
+  return {{"velocity before forces",
+           "grid.transfer",
+           {"node momentum before forces"},
+           {"node velocity before forces"}},
+          [kernel, least_mass](NodeBlock<Real>& block) {
+            kernel(block.state.before_forces.block(block.block), least_mass);
           }};
 }
 
@@ -164,7 +175,7 @@ NodePass<Real> before_forces_pass() {
   template ParticlePass<Real> project_pass(const MaterialRuntime<Real>&);                \
   template NodePass<Real> normalize_pass(const StepPlan<Real>&);                         \
   template OrderPass<Real> before_forces_room_pass();                                    \
-  template NodePass<Real> before_forces_pass();
+  template NodePass<Real> before_forces_pass(const StepPlan<Real>&);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)
 #undef REPOSE_INSTANTIATE

@@ -38,10 +38,11 @@ ParticlePass<Real> project_pass(const MaterialRuntime<Real>& material);
 template <class Real>
 NodePass<Real> normalize_pass(const StepPlan<Real>& plan);
 
-/// For transfers whose particles keep velocity: room for the nodes' velocity before forces, and keeping it.
+/// For transfers whose particles keep velocity: room for the nodes' velocity before forces, and p/m there. The
+/// scatter pass fills it by a second scatter, without stress: stress is a force.
 template <class Real>
 OrderPass<Real> before_forces_room_pass();
 template <class Real>
-NodePass<Real> before_forces_pass();
+NodePass<Real> before_forces_pass(const StepPlan<Real>& plan);
 
 }  // namespace repose

@@ -47,7 +47,7 @@ struct CubicStencil {
   static constexpr double kBaseShift = 1.0;
   static constexpr bool kConstantD = true;
   static constexpr double kInverseD = 3.0;
-  static constexpr double kFeedback = 3.1375;
+  static constexpr double kFeedback = 3.13682;
   static constexpr double kGradientBound = 3.0;
   static constexpr double kBlockShift = 0.5;
   static constexpr int kLowestBase = 0;

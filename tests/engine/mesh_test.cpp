@@ -90,7 +90,7 @@ Result<std::shared_ptr<const Shape>> load(const fs::path& folder, const std::str
 }
 
 fs::path scene_meshes() {
-  return fs::path(__FILE__).parent_path() / "../../apps/scenes/meshes";
+  return fs::path(REPOSE_SCENES) / "meshes";
 }
 
 std::string ply_text() {

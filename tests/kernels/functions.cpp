@@ -147,17 +147,30 @@ struct Determinant {
   }
 };
 
-struct QuadraticWeights {
+template <class Stencil>
+struct WeightsOf {
   static constexpr std::size_t kInputs = 1, kOutputs = 4;
   template <class N>
   static void apply(const N* in, N* out) {
-    const Weights<QuadraticStencil, N> weights(in[0]);
-    for (int k = 0; k < 4; ++k) out[k] = weights.w[k];
+    N w[4];
+    Weights<Stencil, N>{in[0]}.value(w);
+    std::copy_n(w, 4, out);
   }
 };
 
-template <class N>
-Functions<Scalar<N>> functions_of(const char* name) {
+template <class Stencil>
+struct SlopesOf {
+  static constexpr std::size_t kInputs = 1, kOutputs = 4;
+  template <class N>
+  static void apply(const N* in, N* out) {
+    N d[4];
+    Weights<Stencil, N>{in[0]}.slope(d);
+    std::copy_n(d, 4, out);
+  }
+};
+
+template <class N, class... Stencil>
+Functions<Scalar<N>> functions_of(const char* name, std::tuple<Stencil...>) {
   return {name,
           map<Log1p, N>,
           map<Expm1, N>,
@@ -166,7 +179,13 @@ Functions<Scalar<N>> functions_of(const char* name) {
           map<Expm1Twice, N>,
           map<PushForward, N>,
           map<Determinant, N>,
-          map<QuadraticWeights, N>};
+          {map<WeightsOf<Stencil>, N>...},
+          {map<SlopesOf<Stencil>, N>...}};
+}
+
+template <class N>
+Functions<Scalar<N>> functions_of(const char* name) {
+  return functions_of<N>(name, Stencils{});
 }
 
 void fill(const char* name, Functions<float>& single, Functions<double>& dual) {

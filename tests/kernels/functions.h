@@ -4,9 +4,14 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
+#include "kernels/layout/stencil.h"
+
 namespace repose {
+
+inline constexpr std::size_t kStencilCount = std::tuple_size_v<Stencils>;
 
 /// `count` results; a symmetric matrix is six numbers in the order of Sym3.
 template <class Real>
@@ -19,7 +24,8 @@ struct Functions {
   void (*expm1_twice)(const Real* matrix, Real* result, std::size_t count);
   void (*push_forward)(const Real* gradient_and_matrix, Real* result, std::size_t count);  ///< nine, then six
   void (*determinant)(const Real* matrix, Real* result, std::size_t count);                ///< of nine
-  void (*weights)(const Real* f, Real* result, std::size_t count);                         ///< four each
+  void (*weights[kStencilCount])(const Real* f, Real* result, std::size_t count);          ///< four each
+  void (*slopes[kStencilCount])(const Real* f, Real* result, std::size_t count);           ///< four each
 };
 
 /// The scalar templates first, then the packs of each instruction set that this machine has.

@@ -1,9 +1,7 @@
 // Repose tests: a block of nodes with its 26 neighbours, addressed by node coordinates from -4 to 7 an axis.
 #pragma once
 
-#include <memory>
-
-#include "tests/kernels/transfer_reference.h"
+#include "tests/kernels/transfer_probe.h"
 
 namespace repose {
 
@@ -16,24 +14,17 @@ class NodeBlocks {
   NodeBlocks(const NodeBlocks&) = delete;
   NodeBlocks& operator=(const NodeBlocks&) = delete;
 
+  /// The neighbour block that holds a node.
+  static int block_of(int x, int y, int z) {
+    return neighbour_index((x + 4) / 4 - 1, (y + 4) / 4 - 1, (z + 4) / 4 - 1);
+  }
   /// The four values of a node.
   Real* at(int x, int y, int z) {
-    const int block = neighbour_index((x + 4) / 4 - 1, (y + 4) / 4 - 1, (z + 4) / 4 - 1);
     const int node = ((x + 4) % 4 * kBlockSide + (y + 4) % 4) * kBlockSide + (z + 4) % 4;
-    return &values_[block * kBlockValues + node * kNodeValues];
+    return &values_[block_of(x, y, z) * kBlockValues + node * kNodeValues];
   }
 
   void fill(Real value) { std::fill(values_.begin(), values_.end(), value); }
-
-  /// Nodes [-1, 6] from `nodes`, the others as they are.
-  void fill(const NodeValues& nodes) {
-    for (int node = 0; node < kArenaSide * kArenaSide * kArenaSide; ++node) {
-      const int x = node / 64 - 1, y = node / 8 % 8 - 1, z = node % 8 - 1;
-      for (int value = 0; value < kNodeValues; ++value) {
-        at(x, y, z)[value] = static_cast<Real>(nodes.at(x, y, z)[value]);
-      }
-    }
-  }
 
   /// What the kernels are given; a test may set some to null.
   Real* pointers[kNeighbours];
@@ -41,5 +32,11 @@ class NodeBlocks {
  private:
   std::vector<Real> values_;
 };
+
+/// Calls visit(x, y, z) for all nodes of the 27 blocks.
+template <class Visit>
+void for_each_node(Visit visit) {
+  for (int node = 0; node < 12 * 12 * 12; ++node) visit(node / 144 - 4, node / 12 % 12 - 4, node % 12 - 4);
+}
 
 }  // namespace repose

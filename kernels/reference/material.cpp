@@ -1,0 +1,106 @@
+// Repose: see material.h.
+#include "kernels/reference/material.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace repose::reference {
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+
+Matrix full(const Symmetric& a) {
+  Matrix m;
+  m << a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5];
+  return m;
+}
+
+Symmetric packed(const Matrix& m) {
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
+}
+
+/// Replaces the three eigenvalues.
+template <class Change>
+Symmetric with_eigenvalues(const Symmetric& a, Change change) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(full(a));
+  Eigen::Vector3d values = eigen.eigenvalues();
+  change(values);
+  return packed(eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose());
+}
+
+template <class Real>
+Symmetric load(Real* const from[6], std::size_t p) {
+  Symmetric a;
+  for (int k = 0; k < kStrainComponents; ++k) a[k] = from[k][p];
+  return a;
+}
+
+template <class Real>
+void store(const Symmetric& a, Real* const to[6], std::size_t p) {
+  for (int k = 0; k < kStrainComponents; ++k) to[k][p] = static_cast<Real>(a[k]);
+}
+
+}  // namespace
+
+Symmetric half_log1p(const Symmetric& e, double floor) {
+  return with_eigenvalues(e, [floor](Eigen::Vector3d& values) {
+    for (double& value : values) value = std::log1p(std::max(value, floor - 1)) / 2;
+  });
+}
+
+Symmetric expm1_twice(const Symmetric& eps) {
+  return with_eigenvalues(eps, [](Eigen::Vector3d& values) {
+    for (double& value : values) value = std::expm1(2 * value);
+  });
+}
+
+template <class Real>
+void trial(const MaterialInput<Real>& in, double least) {
+  for (std::size_t p = 0; p < in.count; ++p) {
+    Matrix g;
+    for (int k = 0; k < 9; ++k) g(k / 3, k % 3) = double{in.dt} * in.affine[k][p];
+    const Matrix e = full(expm1_twice(load(in.strain, p)));
+    // (I + g)(I + e)(I + g)^T - I without the cancelling ones.
+    const Matrix pushed = e + g + g * e;
+    store(half_log1p(packed(pushed + g.transpose() + pushed * g.transpose()), least * least), in.strain, p);
+  }
+}
+
+template <class Real>
+void project_drucker_prager(const MaterialInput<Real>& in) {
+  const double cone = static_cast<const DruckerPragerConstants<Real>*>(in.constants)->cone;
+  for (std::size_t p = 0; p < in.count; ++p) {
+    const Symmetric projected = with_eigenvalues(load(in.strain, p), [cone](Eigen::Vector3d& strain) {
+      const double trace = strain.sum();
+      const Eigen::Vector3d deviator = strain.array() - trace / 3;
+      const double excess = deviator.norm() + cone * trace;
+      if (trace >= 0) {
+        strain.setZero();
+      } else if (excess > 0) {
+        strain -= excess * deviator / deviator.norm();
+      }
+    });
+    store(projected, in.strain, p);
+  }
+}
+
+template <class Real>
+void stress(const HenckyConstants<Real>& elastic, const MaterialInput<Real>& in) {
+  const double mu = elastic.mu, lambda = elastic.lambda;
+  for (std::size_t p = 0; p < in.count; ++p) {
+    const Matrix strain = full(load(in.strain, p));
+    const Matrix tau = 2 * mu * strain + lambda * strain.trace() * Matrix::Identity();
+    store(packed(tau), in.stress, p);
+  }
+}
+
+#define REPOSE_FOR(Real)                                            \
+  template void trial(const MaterialInput<Real>&, double);          \
+  template void project_drucker_prager(const MaterialInput<Real>&); \
+  template void stress(const HenckyConstants<Real>&, const MaterialInput<Real>&);
+REPOSE_FOR(float)
+REPOSE_FOR(double)
+#undef REPOSE_FOR
+
+}  // namespace repose::reference
