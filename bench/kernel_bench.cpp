@@ -45,21 +45,29 @@ void run_in_cache(benchmark::State& state, const Timed<Real>& timed) {
   }
 }
 
+/// The set for a benchmark; whenever it is another one than before, it is made anew and memory tried.
+template <class Real>
+Sand<Real>& sand_for(const Timed<Real>& timed) {
+  static Sand<Real>* sand = nullptr;
+  if (g_filled_for == timed.name) return *sand;
+  sand = &memory_sand<Real>(timed.what.stencil);
+  g_filled_for = timed.name;
+  try_memory(timed.target, *sand);
+  return *sand;
+}
+
 /// Chunk after chunk of a set that no cache holds, asking for the next one as the stepper has kernels do.
 template <class Real>
-void run_in_memory(benchmark::State& state, const Timed<Real>& timed) {
-  static Sand<Real>* sand = nullptr;
-  if (g_filled_for != timed.name) sand = &memory_sand<Real>(timed.what.stencil);
-  g_filled_for = timed.name;
+void run_in_memory(benchmark::State& state, const Timed<Real>& timed, Sand<Real>& sand) {
   Chunk<Real> scratch(timed.what.stencil);
   Workpiece<Real> piece = scratch.piece();
   piece.ahead = kChunk;
   std::size_t first = 0;
   for (auto _ : state) {
     for (std::size_t call = 0; call < kCalls; ++call) {
-      for (int k = 0; k < Workpiece<Real>::kChannels; ++k) piece.channel[k] = sand->channel[k].data() + first;
+      for (int k = 0; k < Workpiece<Real>::kChannels; ++k) piece.channel[k] = sand.channel[k].data() + first;
       timed.what.kernel(piece);
-      first = first + kChunk < sand->count ? first + kChunk : 0;
+      first = first + kChunk < sand.count ? first + kChunk : 0;
     }
   }
 }
@@ -72,9 +80,12 @@ void run(benchmark::State& state, Timed<Real>& timed) {
     state.SkipWithError(timed.verdict->trouble.c_str());
     return;
   }
-  const Roofline roof = roofline<Real>(timed.what.work, timed.target, timed.storage);
-  g_measurements.expect(timed.name, roof);
-  timed.storage == Storage::kCache ? run_in_cache(state, timed) : run_in_memory(state, timed);
+  timed.storage == Storage::kCache ? run_in_cache(state, timed) : run_in_memory(state, timed, sand_for(timed));
+  const auto find_roof = [work = timed.what.work, target = timed.target, storage = timed.storage] {
+    return roofline<Real>(work, target, storage);
+  };
+  g_measurements.expect(timed.name, find_roof);
+  const Roofline roof = find_roof();
   const double items = static_cast<double>(state.iterations()) * static_cast<double>(kCalls * timed.what.items);
   using Counter = benchmark::Counter;
   state.counters["each"] = Counter(items, Counter::kIsRate | Counter::kInvert);

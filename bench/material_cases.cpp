@@ -1,5 +1,5 @@
-// Repose: trial strain, return map and stress of every material. A new material needs its reference of the
-// return map here, if it yields.
+// Repose: trial strain, return map and stress of every material. A new one needs the overloads below: where its
+// elastic constants are, and, if it yields, the reference of its return map and the work of it.
 #include <memory>
 
 #include "bench/kernel_case.h"
@@ -11,6 +11,9 @@ namespace {
 template <class Real>
 void reference_project(const DruckerPragerConstants<Real>&, const MaterialInput<Real>& in) {
   reference::project_drucker_prager(in);
+}
+Work project_work(const DruckerPragerParameters&) {
+  return project_drucker_prager_work();
 }
 template <class Real>
 const HenckyConstants<Real>& elastic_part(const DruckerPragerConstants<Real>& constants) {
@@ -40,7 +43,7 @@ void add_material(const Parameters& parameters, const MaterialKernels<Real>& ker
                    [=](Workpiece<Real>& piece) { reference::trial(to_and_fro(piece)); }});
   if constexpr (Parameters::kYields) {
     cases.push_back(
-        {"project" + of, 0, kChunk, project_drucker_prager_work(),
+        {"project" + of, 0, kChunk, project_work(parameters),
          [=](Workpiece<Real>& piece) { kernel.project(piece.material(constants.get())); },
          [=](Workpiece<Real>& piece) { reference_project(*constants, piece.material(constants.get())); }});
   }

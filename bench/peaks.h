@@ -5,6 +5,7 @@
 
 #include <iterator>
 
+#include "bench/sand.h"
 #include "kernels/pass/pass.h"
 
 namespace repose {
@@ -18,19 +19,24 @@ struct CorePeaks {
   double l1() const;  ///< the best of the three
 };
 
-/// B/s of x = a x + b in the channels of memory_sand, side by side by so many; every number counts twice, read
-/// and written. Where there are several, a chunk ahead is asked for, as kernels do.
+/// B/s in a set that no cache holds. Memory is shared with whoever else computes on the machine, so these are
+/// the best of all tries of a run, one before each kernel.
 struct MemoryPeaks {
   static constexpr int kStreams[] = {1, 4, 22};
-  double read;  ///< B/s of a sum, one channel after the other
-  double rate[std::size(kStreams)];
+  double read = 0.0;  ///< a sum, one channel after the other
+  /// x = a x + b in so many channels side by side; every number counts twice, read and written. Where there are
+  /// several, a chunk ahead is asked for, as kernels do.
+  double update[std::size(kStreams)] = {};
 
-  double best() const;
+  double best_update() const;
 };
 
 template <class Real>
 const CorePeaks& core_peaks(Target target);
+/// What try_memory has found so far.
 template <class Real>
 const MemoryPeaks& memory_peaks(Target target);
+template <class Real>
+void try_memory(Target target, Sand<Real>& sand);
 
 }  // namespace repose

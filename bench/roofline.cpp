@@ -53,7 +53,7 @@ std::string peaks_row(const char* precision, Target target, bool memory) {
              core.l1_read / 1e9, core.l1_update / 1e9, core.l1_triad / 1e9, core.l2_update / 1e9);
   row += memory ? format(" %.1f |", memory_peaks<Real>(target).read / 1e9) : std::string(" |");
   for (std::size_t k = 0; k < std::size(MemoryPeaks::kStreams); ++k) {
-    row += memory ? format(" %.1f |", memory_peaks<Real>(target).rate[k] / 1e9) : std::string(" |");
+    row += memory ? format(" %.1f |", memory_peaks<Real>(target).update[k] / 1e9) : std::string(" |");
   }
   return row + "\n";
 }
@@ -94,7 +94,7 @@ Roofline roofline(const Work& work, Target target, Storage storage) {
   roof.bytes = work.far_numbers() * sizeof(Real);
   const MemoryPeaks& memory = memory_peaks<Real>(target);
   const double read = work.far_read() * sizeof(Real) / memory.read;
-  if (const double seconds = std::max(read, roof.bytes / memory.best()); seconds > roof.seconds) {
+  if (const double seconds = std::max(read, roof.bytes / memory.best_update()); seconds > roof.seconds) {
     roof.seconds = seconds;
     roof.bound = "memory";
   }
@@ -120,7 +120,7 @@ std::string Measurements::table() const {
       "\n| Kernel | Precision | Set | Data in | ns | Bytes | GB/s | Flops | Gflop/s | Bound by | Share |\n"
       "| --- | --- | --- | --- | ---: | ---: | ---: | ---: | ---: | --- | ---: |\n";
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const Roofline& roof = rooflines_.at(rows_[k].name);
+    const Roofline roof = rooflines_.at(rows_[k].name)();
     const double seconds = median(rows_[k].seconds);
     text += format("| %s | %s | %s | %s | %.2f | %.0f | %.1f | %.0f | %.1f | %s | %.0f %% |\n",
                    names[k].kernel.c_str(), names[k].precision.c_str(), names[k].target.c_str(),

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/peaks.h"
@@ -28,8 +30,10 @@ Roofline roofline(const Work& work, Target target, Storage storage);
 /// What was measured, in the order of running; the rows of the table.
 class Measurements {
  public:
-  /// What is known beforehand of a benchmark of this full name.
-  void expect(const std::string& name, const Roofline& roofline) { rooflines_[name] = roofline; }
+  /// How to tell the roofline of the benchmark of this full name, once all peaks are known.
+  void expect(const std::string& name, std::function<Roofline()> roofline) {
+    rooflines_[name] = std::move(roofline);
+  }
   /// Seconds an item, of one repetition or the median of several.
   void add(const std::string& name, double seconds, std::int64_t repetitions);
 
@@ -41,7 +45,7 @@ class Measurements {
     std::string name;
     std::vector<double> seconds;
   };
-  std::map<std::string, Roofline> rooflines_;
+  std::map<std::string, std::function<Roofline()>> rooflines_;
   std::vector<Row> rows_;
   std::int64_t repetitions_ = 1;
 };

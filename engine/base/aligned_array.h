@@ -1,7 +1,10 @@
 // Repose: memory of channels and fields: 64-byte aligned, never initialised twice, zero beyond its size so that
-// a full register may be read at the end.
+// a full register may be read at the end. Large arrays begin at different places of a page: the channels of a
+// set are walked side by side, and with equal places all their lines would compete for one set of the first
+// cache level.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -16,14 +19,21 @@ class AlignedArray {
  public:
   AlignedArray() = default;
   explicit AlignedArray(std::size_t size) { resize(size); }
+  AlignedArray(AlignedArray&& other) noexcept { swap(*this, other); }
+  AlignedArray& operator=(AlignedArray&& other) noexcept {
+    swap(*this, other);
+    return *this;
+  }
 
   /// Makes room for `size` zeros; what was there is gone. Throws std::bad_alloc.
   void resize(std::size_t size) {
     if (size > capacity_) {
       const std::size_t bytes = round_up((size + kPadding / sizeof(T)) * sizeof(T));
-      T* raw = static_cast<T*>(std::aligned_alloc(kAlignment, bytes));
+      const std::size_t shift = bytes >= kLarge ? next_shift() : 0;
+      auto* raw = static_cast<std::byte*>(std::aligned_alloc(kAlignment, bytes + shift));
       if (raw == nullptr) throw std::bad_alloc();
-      data_.reset(raw);
+      memory_.reset(raw);
+      data_ = reinterpret_cast<T*>(raw + shift);
       capacity_ = bytes / sizeof(T) - kPadding / sizeof(T);
     }
     size_ = size;
@@ -35,18 +45,19 @@ class AlignedArray {
     size_ = size;
   }
   void clear() {
-    if (data_) std::memset(data_.get(), 0, capacity_ * sizeof(T) + kPadding);
+    if (data_ != nullptr) std::memset(data_, 0, capacity_ * sizeof(T) + kPadding);
   }
 
-  T* data() { return data_.get(); }
-  const T* data() const { return data_.get(); }
-  T& operator[](std::size_t i) { return data_.get()[i]; }
-  const T& operator[](std::size_t i) const { return data_.get()[i]; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
   std::size_t size() const { return size_; }
-  std::size_t bytes() const { return data_ ? capacity_ * sizeof(T) + kPadding : 0; }
+  std::size_t bytes() const { return data_ != nullptr ? capacity_ * sizeof(T) + kPadding : 0; }
 
   friend void swap(AlignedArray& a, AlignedArray& b) noexcept {
-    a.data_.swap(b.data_);
+    a.memory_.swap(b.memory_);
+    std::swap(a.data_, b.data_);
     std::swap(a.size_, b.size_);
     std::swap(a.capacity_, b.capacity_);
   }
@@ -58,10 +69,18 @@ class AlignedArray {
     return (bytes + kAlignment - 1) / kAlignment * kAlignment;
   }
 
+  static constexpr std::size_t kLarge = 64 * 1024, kPage = 4096;
+  /// Five lines beyond the last one: an odd number, so that all 64 places come round before one repeats.
+  static std::size_t next_shift() {
+    static std::atomic<std::size_t> arrays = 0;
+    return arrays.fetch_add(1, std::memory_order_relaxed) * 5 * kAlignment % kPage;
+  }
+
   struct Free {
-    void operator()(T* raw) const { std::free(raw); }
+    void operator()(std::byte* raw) const { std::free(raw); }
   };
-  std::unique_ptr<T[], Free> data_;
+  std::unique_ptr<std::byte, Free> memory_;
+  T* data_ = nullptr;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };

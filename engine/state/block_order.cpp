@@ -201,6 +201,10 @@ void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Thread
             state.sets[k].begin[old + 1] - state.sets[k].begin[old] - buffers.old[old].departures[kNeighbours];
       },
       64);
+  const std::uint32_t most = *std::max_element(begin.begin(), begin.end());
+  for (auto& keys : keys_) {  // whichever thread meets the fullest block
+    if (keys.size() < most) keys.resize(most + most / 8);
+  }
   for (std::size_t owner = 0; owner < owners; ++owner) {
     begin[owner + 1] += begin[owner];
     arrivals[owner + 1] += arrivals[owner];
@@ -227,8 +231,7 @@ void BlockOrder<Real>::sort_owner(const State<Real>& state, std::size_t k, std::
     for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(first + i);
     return;
   }
-  auto& keys = keys_[static_cast<std::size_t>(Threads::index())];
-  if (keys.size() < count) keys.resize(count);
+  const auto& keys = keys_[static_cast<std::size_t>(Threads::index())];
   collect(state, k, owner, first, last);
   for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(keys[i]);
 }
