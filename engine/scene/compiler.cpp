@@ -284,7 +284,8 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
 std::size_t bytes_per_particle(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
   const int affine = transfer_choice(scene).keeps_affine() ? kAffineComponents : 0;
-  std::size_t bytes = real * static_cast<std::size_t>(3 + 3 + affine + kStrainComponents) + sizeof(std::uint32_t);
+  std::size_t bytes =
+      real * static_cast<std::size_t>(3 + 3 + affine + kStrainComponents) + sizeof(std::uint32_t);
   bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
   for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
   return bytes;

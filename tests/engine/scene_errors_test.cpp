@@ -151,6 +151,16 @@ TEST(SceneErrors, OutOfRange_SaysRangeAndUnit) {
       "number, at least 0");
 }
 
+TEST(SceneErrors, TransferThatIsNone_NamesAll) {
+  EXPECT_EQ(override_errors("grid.transfer=picc"),
+            "--set grid.transfer=picc: grid.transfer: found text \"picc\"; expected one of \"mls_apic\", "
+            "\"apic\", \"rpic\", \"pic\", \"flip\", \"aflip\"; did you mean \"pic\"?");
+  EXPECT_EQ(
+      override_errors("grid.kept_velocity=1.5"),
+      "--set grid.kept_velocity=1.5: grid.kept_velocity: 1.5 is out of range; expected a number, at least 0 "
+      "and at most 1");
+}
+
 TEST(SceneErrors, UnknownChoice_NamesAll) {
   EXPECT_EQ(errors(with("\"name\": \"floor\"", "\"name\": \"floor\", \"contact\": \"stiky\"")),
             "s.json:10:34: colliders[0].contact: found text \"stiky\"; expected one of \"sticky\", \"slip\", "

@@ -22,7 +22,8 @@ constexpr const char* kWhole = R"({
   // every section, no value at its default
   "repose": 1, "name": "hourglass-1", "up": "z",
   "parameters": {"b": "= 2 * a", "a": 0.25, "turn": "= 90 * deg"},
-  "grid": {"spacing": 0.02, "precision": "double", "stencil": "quadratic", "transfer": "apic",
+  "grid": {"spacing": 0.02, "precision": "double", "stencil": "cubic", "transfer": "rpic",
+           "kept_velocity": 0.5, "kept_stretching": 0.25,
            "origin_cells": [8, -16, 0], "plane_strain": "z",
            "periodic": {"x": {"lower": -0.32, "length": 0.64}}},
   "time": {"frames": 7, "frames_per_second": 30, "max_step": 0.001, "cfl": 0.1, "sound": 0.2,
@@ -62,6 +63,10 @@ TEST(SceneReader, WholeScene_SectionsArrive) {
   EXPECT_EQ(scene.up, UpAxis::kZ);
   EXPECT_EQ(scene.grid.spacing, 0.02);
   EXPECT_EQ(scene.grid.precision, Precision::kDouble);
+  EXPECT_STREQ(kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)].name, "cubic");
+  EXPECT_STREQ(kTransferChoices[static_cast<std::size_t>(scene.grid.transfer)].name, "rpic");
+  EXPECT_EQ(scene.grid.kept_velocity, 0.5);
+  EXPECT_EQ(scene.grid.kept_stretching, 0.25);
   EXPECT_EQ(scene.grid.origin_cells, (std::array<std::int64_t, 3>{8, -16, 0}));
   EXPECT_EQ(scene.grid.plane_strain, 2);
   EXPECT_EQ(scene.grid.periodic[0].lower, -0.32);
@@ -84,6 +89,17 @@ TEST(SceneReader, WholeScene_SectionsArrive) {
   EXPECT_EQ(scene.camera.eye, Vec3(3, 2, 1));
   EXPECT_EQ(scene.camera.target, Vec3(0, 0, 1));
   EXPECT_EQ(scene.camera.field_of_view, 50.0);
+}
+
+TEST(SceneReader, EveryStencilAndTransfer_IsReadByItsName) {
+  for (std::size_t k = 0; k < kStencilFigures.size(); ++k) {
+    EXPECT_EQ(read(kSmall, {std::string("grid.stencil=") + kStencilFigures[k].name}).grid.stencil,
+              static_cast<int>(k));
+  }
+  for (std::size_t k = 0; k < kTransferChoices.size(); ++k) {
+    EXPECT_EQ(read(kSmall, {std::string("grid.transfer=") + kTransferChoices[k].name}).grid.transfer,
+              static_cast<int>(k));
+  }
 }
 
 TEST(SceneReader, WholeScene_MaterialsArrive) {
@@ -132,6 +148,10 @@ TEST(SceneReader, KeysLeftOut_DefaultsStay) {
   EXPECT_EQ(scene.up, UpAxis::kY);
   EXPECT_EQ(scene.effect<Gravity>().acceleration, Vec3(0, -9.81, 0));
   EXPECT_FALSE(scene.grid.plane_strain.has_value());
+  EXPECT_STREQ(kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)].name, "quadratic");
+  EXPECT_STREQ(kTransferChoices[static_cast<std::size_t>(scene.grid.transfer)].name, "mls_apic");
+  EXPECT_EQ(scene.grid.kept_velocity, 0.95);
+  EXPECT_EQ(scene.grid.kept_stretching, 0.0);
   EXPECT_EQ(scene.time.frames, TimeDescription{}.frames);
   EXPECT_EQ(scene.bodies[0].particles_per_cell, 8);
   EXPECT_EQ(scene.effect<Colliders>().list[0].contact, Contact::kSeparating);

@@ -62,6 +62,30 @@ TEST(TimeStep, LooseSound_IsolatedBinds) {
   EXPECT_DOUBLE_EQ(step.dt, 0.9 * kSpacing / 15.0);
 }
 
+/// Cells that the pulse of a particle alone may cross, worked out by hand: by moments 2 / sqrt(D^-1), by
+/// gradients 2 / sqrt(2 h - D^-1), without C sqrt(2 / h); h = 6 and 3.13682, D^-1 = 4 and 3.
+TEST(TimeStep, LooseSound_IsolatedFollowsStencilAndTransfer) {
+  struct Row {
+    int stencil, transfer;
+    double cells;
+  };
+  constexpr int kQuadratic = 0, kCubic = 1, kMls = 0, kApic = 1, kRpic = 2, kPic = 3, kFlip = 4, kAflip = 5;
+  constexpr Row kRows[] = {{kQuadratic, kMls, 1.0},      {kQuadratic, kApic, 0.70711},
+                           {kQuadratic, kRpic, 0.70711}, {kQuadratic, kPic, 0.57735},
+                           {kQuadratic, kFlip, 0.57735}, {kQuadratic, kAflip, 1.0},
+                           {kCubic, kMls, 1.15470},      {kCubic, kApic, 1.10538},
+                           {kCubic, kPic, 0.79849},      {kCubic, kAflip, 1.15470}};
+  StepLimits given = limits();
+  given.sound = 100.0;
+  for (const Row& row : kRows) {
+    const StepSize step = choose_step(given, TransferChoice{row.stencil, row.transfer}, kSpacing, {}, kNoFrame);
+    EXPECT_EQ(step.limit, Limit::kIsolated) << row.stencil << ' ' << row.transfer;
+    EXPECT_NEAR(step.dt, 0.9 * row.cells * kSpacing / 15.0, 1e-8) << row.stencil << ' ' << row.transfer;
+  }
+  const StepSize linear = choose_step(given, TransferChoice{2, kMls}, kSpacing, {}, kNoFrame);
+  EXPECT_EQ(linear.limit, Limit::kSound) << "no step is safe with the linear stencil: nothing is promised";
+}
+
 TEST(TimeStep, FastMatterOrFastSolid_VelocityBinds) {
   Counters fast;
   fast.max_speed = 50.0;
