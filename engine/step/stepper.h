@@ -3,6 +3,7 @@
 // trial.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -85,5 +86,25 @@ class Stepper {
   bool topology_known_ = false;                 // to the passes that follow it
   Profile profile_;
 };
+
+/// Calls visit(set, chunk) for the particles of an owner; `next` is the owner whose turn it is then.
+template <class Real>
+template <class Visit>
+void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, std::size_t next, Real dt,
+                                   Visit visit) {
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    ParticleSet<Real>& set = state.sets[k];
+    const std::size_t end = set.begin[owner + 1];
+    for (std::size_t first = set.begin[owner]; first < end; first += kChunk) {
+      Chunk<Real> chunk{set,       first, set.span(first, std::min(kChunk, end - first)),
+                        scratch(), dt,    state.spacing,
+                        {},        {},    {},
+                        {},        {},    {}};
+      const std::size_t after = end - first > kChunk ? first + kChunk : set.begin[next];
+      chunk.particles.ahead = static_cast<std::ptrdiff_t>(after) - static_cast<std::ptrdiff_t>(first);
+      visit(k, chunk);
+    }
+  }
+}
 
 }  // namespace repose
