@@ -35,9 +35,9 @@ void describe(Fields& fields, Collider& collider) {
 }
 
 /// A node is constrained as soon as the half cell around it reaches the solid. With the bare sign of its own
-/// distance the first constrained node lies up to a cell inside, and a particle drifts half a cell farther, to
-/// where its stencil has left the free nodes: 1.5 cells deep. So the wall is met half a cell early at most, and
-/// passed by one at most.
+/// distance the first constrained node lies up to a cell inside, and a particle drifts farther, to where its
+/// stencil has left the free nodes: 1.5 cells deep with the quadratic one, two with the cubic. So the wall is
+/// met half a cell early at most, and passed by one (one and a half) at most.
 constexpr double kNodeReach = 0.5;  // cells
 
 /// One node's place beside one solid.
@@ -80,13 +80,20 @@ typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const Sta
   // Half the diagonal of a block's nodes, the cell that a node may be predicted to move along each axis, its
   // own reach.
   const double reach = ((1.5 + 1.0) * std::sqrt(3.0) + kNodeReach) * state.spacing;
+  // Material lies in the plane through the origin; the single node across it stands for that plane wherever it
+  // is.
+  const int flat = state.topology.flat_axis;
+  const auto in_plane = [flat](Vec3 x) {
+    if (flat >= 0) x[flat] = 0.0;
+    return x;
+  };
   NearSolids near;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
-    if (solids_[k].distance(state.world(block, {1.5, 1.5, 1.5})) > reach) continue;
+    if (solids_[k].distance(in_plane(state.world(block, {1.5, 1.5, 1.5}))) > reach) continue;
     Near entry{k, {}};
     for (int node = 0; node < kBlockNodes; ++node) {
-      const Vec3 x = state.world(block, {double(node / 16), double(node / 4 % 4), double(node % 4)});
-      const Vec3 normal = solids_[k].normal(x, 0.25 * state.spacing);
+      const Vec3 x = in_plane(state.world(block, {double(node / 16), double(node / 4 % 4), double(node % 4)}));
+      const Vec3 normal = in_plane(solids_[k].normal(x, 0.25 * state.spacing));
       NodeContact<Real>& contact = entry.nodes[static_cast<std::size_t>(node)];
       contact.distance = static_cast<Real>(solids_[k].distance(x) - kNodeReach * state.spacing);
       for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);

@@ -154,6 +154,9 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), std::move(*seeds), next_id, set,
              cells.emplace_back());
     next_id += static_cast<std::uint32_t>(set.count);
+    // Spin strains whether or not particles store C; its matrix has the norm sqrt(2) |w|.
+    const double spin = std::sqrt(2.0) * body.angular_velocity.norm();
+    state.counters.max_gradient = std::max(state.counters.max_gradient, spin);
     state.sets.push_back(std::move(set));
   }
   place_in_blocks(state, std::move(cells), transfer_choice(scene).ownership());
@@ -161,14 +164,12 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
 }
 
 template <class Real>
-void set_initial_maxima(State<Real>& state) {
+void set_initial_speed(State<Real>& state) {
   for (const auto& set : state.sets) {
     for (std::size_t p = 0; p < set.count; ++p) {
-      double speed = 0.0, gradient = 0.0;
+      double speed = 0.0;
       for (const auto& v : set.velocity) speed += double(v[p]) * double(v[p]);
-      for (const auto& c : set.affine) gradient += set.keeps_affine ? double(c[p]) * double(c[p]) : 0.0;
       state.counters.max_speed = std::max(state.counters.max_speed, std::sqrt(speed));
-      state.counters.max_gradient = std::max(state.counters.max_gradient, std::sqrt(gradient));
     }
   }
 }
@@ -261,7 +262,7 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   if (!solids) return solids.error();
   compiled.solids = std::move(*solids);
   if (auto seeded = seed_bodies(scene, options, state); !seeded) return seeded.error();
-  set_initial_maxima(state);
+  set_initial_speed(state);
   compiled.plan = compile_plan(scene, options, state, compiled.solids);
   if (auto valid = compiled.plan.validate(); !valid) return valid.error();
   return compiled;

@@ -245,6 +245,9 @@ void describe(Fields& fields, Scene& scene) {
   describe_bodies(fields, scene);
   turn_gravity(scene);
   for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields); });
+  fields.check(
+      !scene.grid.plane_strain || scene.effect<Gravity>().acceleration[*scene.grid.plane_strain] == 0.0,
+      "gravity", "acceleration must be zero along the flat axis (plane_strain)");
   fields.object("output", given, false, "what is written per frame",
                 [&](Fields& f) { describe_output(f, scene.output); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",

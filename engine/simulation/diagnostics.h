@@ -19,7 +19,7 @@ struct Diagnostics {
   double mass = 0.0;               ///< kg
   double volume = 0.0;             ///< sum of V0 exp(tr eps): the volume as the elastic strain leaves it, m^3
   double kinetic_energy = 0.0;     ///< of particle velocities, J
-  double affine_energy = 0.0;      ///< of the velocity gradients that APIC carries, J
+  double affine_energy = 0.0;      ///< of the matrices C that particles keep, J
   double elastic_energy = 0.0;     ///< J
   double potential_energy = 0.0;   ///< -m g . x with the scene's full gravity, J
   Vec3 momentum{0, 0, 0};          ///< kg m/s

@@ -74,6 +74,11 @@ class SimulationOf final : public Simulation {
   void reset_profile() override { stepper_.reset_profile(); }
   const std::optional<Offender>& offender() const override { return offender_; }
   std::vector<std::pair<std::string, PassDescription>> passes() const override;
+  double longest_step() const override {
+    const double no_frame = std::numeric_limits<double>::infinity();
+    return choose_step(stepper_.plan().limits, stepper_.plan().transfer, state_.spacing, Counters{}, no_frame)
+        .dt;
+  }
   Target target() const override { return target_; }
   int threads() const override { return const_cast<Stepper<Real>&>(stepper_).threads().count(); }
   const std::vector<Solid>& solids() const override { return solids_; }

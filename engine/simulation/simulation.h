@@ -68,6 +68,8 @@ class Simulation {
   virtual const std::optional<Offender>& offender() const = 0;
   /// The passes of a step, in order, each with the phase it runs in.
   virtual std::vector<std::pair<std::string, PassDescription>> passes() const = 0;
+  /// What the limits of the step allow while nothing moves, s.
+  virtual double longest_step() const = 0;
   virtual Target target() const = 0;
   virtual int threads() const = 0;
   virtual const std::vector<Solid>& solids() const = 0;

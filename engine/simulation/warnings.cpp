@@ -94,6 +94,11 @@ Fastest<Real> find_fastest(const State<Real>& state) {
 
 std::vector<std::string> scene_warnings(const Scene& scene) {
   std::vector<std::string> warnings;
+  const StencilFigures& nodes = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)];
+  if (!std::isfinite(nodes.feedback)) {
+    warnings.push_back(std::string("grid.stencil: no step is stable for particles that stand alone with \"") +
+                       nodes.name + "\"; use it only to compare");
+  }
   for (const MaterialDescription& material : scene.materials) {
     const auto* sand = std::get_if<DruckerPragerParameters>(&material.parameters);
     if (sand == nullptr || 3.0 * sand->cone_slope() / std::sqrt(2.0) < 1.0) continue;

@@ -1,13 +1,12 @@
 // Repose: particles in order: by block, then by cell of the base node, then by id. The argument for equal bits:
 //   - the key is total, so the order does not depend on what it was before nor on threads;
 //   - a block adds its particles in this order, by one thread; the 8 colours follow one another, and no two
-//   blocks
-//     of a colour share a node: so each node sums in an order that no number of threads changes;
-//   - offsets are relative to the block: shifting the scene by a multiple of 8 cells changes block coordinates,
-//   and
-//     neither offsets nor colours.
-// Order is lazy: it is made anew when a particle has drifted a cell out of its block, or when the runs have
-// become so short that scattering loses more than ordering costs. Both are counted, never timed.
+//     blocks of a colour share a node: so each node sums in an order that no number of threads changes;
+//   - offsets are relative to the block: shifting the scene by a multiple of 8 cells changes the coordinates of
+//     blocks, and neither offsets nor colours.
+// Order is lazy: it is made anew when a particle has drifted as far as its block allows (a cell; half a cell
+// with the cubic stencil), or when the runs have become so short that scattering loses more than ordering
+// costs. Both are counted, never timed.
 #pragma once
 
 #include <array>
@@ -20,7 +19,8 @@
 
 namespace repose {
 
-/// Makes the order of a state, and keeps memory for it between events: 9.5 bytes a particle in single precision.
+/// Makes the order of a state, and keeps memory for it between events: 9.5 bytes a particle in single
+/// precision.
 template <class Real>
 class BlockOrder {
  public:

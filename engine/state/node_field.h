@@ -38,7 +38,7 @@ struct SparseNodeField {
   }
   Real* block(std::size_t index) { return field.block(static_cast<std::size_t>(slot[index])); }
   const Real* block(std::size_t index) const { return field.block(static_cast<std::size_t>(slot[index])); }
-  std::size_t bytes() const { return field.bytes() + slot.capacity() * sizeof(std::int32_t); }
+  std::size_t bytes() const { return field.bytes() + slot.capacity() * sizeof(std::int32_t) + live.capacity(); }
 };
 
 }  // namespace repose

@@ -23,7 +23,7 @@ struct Counters {
   double time = 0.0;       ///< s
   double last_dt = 0.0;    ///< s
   double max_speed = 0.0;  ///< m/s, largest particle speed after the last step
-  double max_gradient = 0.0;            ///< 1/s, largest |C| after the last step
+  double max_gradient = 0.0;            ///< 1/s, largest |grad v| of the last step
   std::int32_t order_due = 1;           ///< a particle has drifted as far as its block allows
   std::int64_t runs_when_ordered = -1;  ///< runs in the first step after the last order; -1: not yet counted
   std::int64_t runs_wasted = 0;         ///< sum over the steps since of the runs beyond that
@@ -65,7 +65,9 @@ struct State {
     for (const auto& set : sets) sum += set.bytes();
     return sum;
   }
-  std::size_t grid_bytes() const { return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + grid.bytes(); }
+  std::size_t grid_bytes() const {
+    return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + grid.bytes();
+  }
 };
 
 }  // namespace repose

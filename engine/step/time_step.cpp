@@ -17,7 +17,10 @@ double isolated_cells(const TransferChoice& transfer) {
   const bool moments = transfer.figures().force == Force::kMoments && nodes.constant_d;
   const double h = moments ? nodes.inverse_d : nodes.feedback;
   if (!std::isfinite(h)) return 0.0;
-  return transfer.keeps_affine() ? 2.0 / std::sqrt(2.0 * h - nodes.inverse_d) : std::sqrt(2.0 / h);
+  // With the share s of its stretching that a particle tells: APIC at s = 1, PIC at s = 0.
+  const Affine affine = transfer.figures().affine;
+  const double s = affine == Affine::kFull ? 1.0 : affine == Affine::kSkew ? transfer.kept_stretching : 0.0;
+  return std::sqrt(2.0 * (1.0 + s) / (h + s * (h - nodes.inverse_d)));
 }
 
 }  // namespace

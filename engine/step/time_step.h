@@ -1,11 +1,11 @@
 // Repose: how long a step may be. Each limit has a name, and the name of the one that bound is reported, so
 // that a slow run says why it is slow:
 //   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, Table 2, has 1)
-//   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2, margins in
-//   docs/math.md isolated  a particle alone must not feed its own pulse: dt <= 2 dx / (a sqrt(2h - D^-1)), a^2
-//   = (3 lambda + 2 mu)/rho;
-//             h = D^-1 with forces by moments, the stencil's feedback with gradients, D^-1 left out without C
-//             (after Bai and Schroeder 2022); a linear stencil has no such limit and is not safe
+//   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2 (docs/math.md)
+//   isolated  a particle alone must not feed its own pulse (after Bai and Schroeder 2022):
+//             dt <= (dx / a) sqrt(2 (1 + s) / (h + s (h - D^-1))),   a^2 = (3 lambda + 2 mu)/rho,
+//             s the share of stretching that it tells: 1 APIC, 0 PIC; h = D^-1 with forces by moments,
+//             the stencil's feedback with gradients. A linear stencil has no such limit and is not safe.
 //   strain    dt |grad v| <= `strain`, which keeps det(I + dt grad v) > 0
 //   max_step  the scene's own bound
 //   frame     the step ends on the frame; steps of a frame's remainder are equal

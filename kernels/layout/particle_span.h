@@ -16,7 +16,7 @@ template <class Real>
 struct ParticleSpan {
   Real* position[3];                ///< cells, from the block's origin
   Real* velocity[3];                ///< m/s
-  Real* affine[kAffineComponents];  ///< C, 1/s: the local velocity gradient that APIC carries
+  Real* affine[kAffineComponents];  ///< C, 1/s: the matrix that APIC carries; null where none is kept
   Real* strain[kStrainComponents];  ///< Hencky strain log(b)/2 of the elastic part, no unit
   std::size_t count;
   /// Distance to the particles that are worked on next: kernels ask memory for those while they do these. There

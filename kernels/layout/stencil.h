@@ -41,7 +41,7 @@ struct QuadraticStencil {
 
 struct CubicStencil {
   static constexpr const char* kName = "cubic";
-  static constexpr const char* kMeaning = "cubic B-spline, 64 nodes: smoother forces, about twice the time";
+  static constexpr const char* kMeaning = "cubic B-spline, 64 nodes: smoother forces, about 1.2 times the time";
   static constexpr int kWidth = 4;
   static constexpr int kCenter = 1;
   static constexpr double kBaseShift = 1.0;

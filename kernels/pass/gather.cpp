@@ -1,6 +1,5 @@
 // Repose: nodes to particles (Klar et al. 2016, eqs. 11-12, and the gradient of eq. 16).
-//   v = sum w v_i,     C = D^-1 sum w v_i (x_i - x_p)^T,     grad v = C by moments, sum v_i grad w^T by
-//   gradients
+//   v = sum w v_i,   C = D^-1 sum w v_i (x_i - x_p)^T,   grad v = C by moments, sum v_i grad w^T by gradients
 // Runs keep their rows of nodes in registers; the sums over the four nodes of a row are taken in the order that
 // simd.h writes down.
 #undef HWY_TARGET_INCLUDE

@@ -1,7 +1,6 @@
 // Repose: particles to nodes. Node i of the stencil receives mass w m and momentum (Klar et al. 2016, eqs. 7-9)
 //   w (m v + m A (x_i - x_p)) + dt f_i,
-//   f_i = -V0 tau D^-1 w (x_i - x_p)  by moments  (Hu et al. 2018)   or   -V0 tau grad w  by gradients  (eq.
-//   18)
+//   f_i = -V0 tau D^-1 w (x_i - x_p)  by moments (Hu et al. 2018),   or  -V0 tau grad w  by gradients
 // as rows of four nodes. Particles with one base node (a run) add up in registers and touch memory once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"
@@ -74,7 +73,9 @@ REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size
     for (int axis = 0; axis < 3; ++axis) {
       const P tau = P::load_first(in.stress[kSymmetric[row][axis]] + first, lanes);
       if constexpr (S::kAffine) {
-        slope[axis][row] = mass_per_cell * told<affine>(c, row, axis, in.kept_stretching);
+        // The single node of a flat axis has no lever: RPIC's mirror must not give it one.
+        const bool flat = affine == Affine::kSkew && axis == in.lattice.flat_axis;
+        slope[axis][row] = flat ? zero : mass_per_cell * told<affine>(c, row, axis, in.kept_stretching);
       } else {
         slope[axis][row] = zero;
       }

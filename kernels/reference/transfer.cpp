@@ -69,6 +69,8 @@ Matrix told(Affine affine, const ScatterInput<Real>& in, std::size_t p) {
       const double c = in.particles.affine[3 * row + axis][p],
                    transposed = in.particles.affine[3 * axis + row][p];
       a[row][axis] = (c - transposed) / 2 + kept * (c + transposed) / 2;
+      // Across plane strain there is one node and no lever.
+      if (affine == Affine::kSkew && axis == in.lattice.flat_axis) a[row][axis] = 0.0;
     }
   }
   return a;

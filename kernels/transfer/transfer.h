@@ -5,8 +5,7 @@
 // They differ in the matrix A, in how stress pushes nodes, and in whether a particle keeps some of its own
 // velocity:
 //   forces by moments    f_i = -V0 tau D^-1 w (x_i - x_p), gradient of velocity C    (MLS form, Hu et al. 2018)
-//   forces by gradients  f_i = -V0 tau grad w,  gradient of velocity sum v_i grad w^T  (Klar et al. 2016, eq.
-//   18)
+//   forces by gradients  f_i = -V0 tau grad w, gradient of velocity sum v_i grad w^T    (Klar et al. 2016)
 #pragma once
 
 namespace repose {

@@ -1,4 +1,5 @@
 // Repose: scenes that are wrong: each message stands at its exact place and says what would be right.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -214,6 +215,8 @@ TEST(SceneErrors, LatticeOffBlocks_Refused) {
   EXPECT_EQ(
       errors(with(spacing, spacing + ", \"plane_strain\": \"x\", \"periodic\": {\"x\": {\"length\": 0.8}}")),
       "s.json:4:67: grid.periodic.x: this axis is flat (plane_strain) and cannot repeat");
+  EXPECT_THAT(errors(with(spacing, spacing + ", \"plane_strain\": \"y\"")),
+              testing::HasSubstr("gravity: acceleration must be zero along the flat axis (plane_strain)"));
 }
 
 TEST(SceneErrors, Expression_NearestNameAndPlace) {

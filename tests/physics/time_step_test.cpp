@@ -71,7 +71,7 @@ TEST(TimeStep, LooseSound_IsolatedFollowsStencilAndTransfer) {
   };
   constexpr int kQuadratic = 0, kCubic = 1, kMls = 0, kApic = 1, kRpic = 2, kPic = 3, kFlip = 4, kAflip = 5;
   constexpr Row kRows[] = {{kQuadratic, kMls, 1.0},      {kQuadratic, kApic, 0.70711},
-                           {kQuadratic, kRpic, 0.70711}, {kQuadratic, kPic, 0.57735},
+                           {kQuadratic, kRpic, 0.57735}, {kQuadratic, kPic, 0.57735},
                            {kQuadratic, kFlip, 0.57735}, {kQuadratic, kAflip, 1.0},
                            {kCubic, kMls, 1.15470},      {kCubic, kApic, 1.10538},
                            {kCubic, kPic, 0.79849},      {kCubic, kAflip, 1.15470}};
@@ -82,6 +82,9 @@ TEST(TimeStep, LooseSound_IsolatedFollowsStencilAndTransfer) {
     EXPECT_EQ(step.limit, Limit::kIsolated) << row.stencil << ' ' << row.transfer;
     EXPECT_NEAR(step.dt, 0.9 * row.cells * kSpacing / 15.0, 1e-8) << row.stencil << ' ' << row.transfer;
   }
+  TransferChoice stretching{kQuadratic, kRpic};
+  stretching.kept_stretching = 1.0;  // RPIC that tells all is APIC
+  EXPECT_NEAR(choose_step(given, stretching, kSpacing, {}, kNoFrame).dt, 0.9 * 0.70711 * kSpacing / 15.0, 1e-8);
   const StepSize linear = choose_step(given, TransferChoice{2, kMls}, kSpacing, {}, kNoFrame);
   EXPECT_EQ(linear.limit, Limit::kSound) << "no step is safe with the linear stencil: nothing is promised";
 }

@@ -101,6 +101,21 @@ TEST(TransferRest, BlockOnFloor_EveryTransfer_Rests) {
 }
 
 /// Nothing but stress can hold a block whose particles keep all of their velocity.
+/// Across plane strain there is one node, wherever the stencil puts it: a floor thinner than a cell must hold.
+TEST(TransferRest, PlaneStrainOnAThinFloor_EveryStencil_Holds) {
+  constexpr const char* kSlab = R"json({"repose": 1, "name": "slab",
+    "grid": {"spacing": 0.02, "plane_strain": "z"},
+    "materials": {"gel": {"type": "elastic", "density": 1000, "youngs_modulus": 1e5}},
+    "bodies": [{"name": "slab", "material": "gel",
+                "shape": {"type": "box", "lower": [-0.06, 0, -1], "upper": [0.06, 0.06, 1]}}],
+    "colliders": [{"name": "floor", "shape": {"type": "box", "lower": [-1, -0.2, -0.004], "upper": [1, 0, 0.004]}}]})json";
+  for (const std::string& stencil : names_of_safe_stencils()) {
+    const auto simulation = simulate(scene_of(kSlab, {"grid.stencil=" + stencil}));
+    ASSERT_TRUE(run_until(*simulation, 0.3));
+    EXPECT_GT(simulation->diagnose().lower[1], -0.02) << stencil;
+  }
+}
+
 TEST(TransferRest, AllVelocityKept_StillRests) {
   expect_rest("quadratic", "flip", 1.0);
   expect_rest("quadratic", "aflip", 1.0);
