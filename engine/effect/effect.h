@@ -1,14 +1,69 @@
-// Repose: what every effect is: a key of the scene, whether the scene calls for it, the channels and the passes
-// that it then adds. What is off adds none, and costs nothing.
+// Repose: what every effect is: keys of the scene, whether the scene calls for it, the channels and the passes
+// that it then adds. What is off adds none, and costs nothing. Only gravity and solids are known by name
+// elsewhere; everything else about an effect stands in its own pair of files.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/base/params.h"
+#include "engine/base/result.h"
 #include "engine/effect/solid.h"
 #include "engine/step/step_plan.h"
+#include "kernels/material/materials.h"
 
 namespace repose {
+
+/// What an effect is told of a set of particles before there are any.
+struct SetDescription {
+  std::string name;      ///< of the body, or of what makes the particles
+  std::string material;  ///< its name in the scene
+  MaterialParameters parameters;
+
+  bool yields() const {
+    return std::visit([](const auto& p) { return std::decay_t<decltype(p)>::kYields; }, parameters);
+  }
+  const Elasticity& elasticity() const {
+    return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
+  }
+};
+
+/// One number per particle that an effect keeps.
+struct Channel {
+  std::string name;
+  double initial = 0.0;
+};
+
+/// The scene around an effect, while it makes itself ready.
+struct Surroundings {
+  double spacing = 0.0;  ///< dx, m
+  int flat_axis = -1;    ///< of plane strain, or -1
+  Vec3 up{0, 1, 0};
+  Vec3 gravity{0, 0, 0};  ///< m/s^2, at its full value
+  std::string folder;     ///< where relative paths start
+  bool allow_outside_paths = false;
+  std::function<std::string(const std::string& key)> where;  ///< "file:line:col: key"
+
+  /// Builds the shape that stands at a key. Errors: 65, 66, with the key.
+  Result<std::shared_ptr<const Shape>> shape(const ShapeDescription& description,
+                                             const std::string& key) const {
+    auto made = make_shape(description, folder, spacing, allow_outside_paths);
+    if (!made) return Error{made.error().kind, made.error().text(), where(key)};
+    return *made;
+  }
+};
+
+/// Particles that have just been made, [first, last) of a set, with the motion of their body or emitter.
+template <class Real>
+struct Newcomers {
+  ParticleSet<Real>& set;
+  std::size_t first, last;
+  const SetDescription& description;
+  const Surroundings& surroundings;
+  std::function<Vec3(std::size_t p)> position;  ///< m, in the scene's frame
+};
 
 /// What effects add to while a scene is compiled.
 template <class Real>
@@ -16,26 +71,79 @@ struct Assembly {
   StepPlan<Real>& plan;
   const State<Real>& state;
   const std::vector<Solid>& solids;
+  const std::vector<SetDescription>& sets;  ///< in the order of the state's sets
+  const Surroundings& surroundings;
 };
 
 /// The hooks that an effect may fill, each with the default of adding nothing. An effect further has
 ///   static constexpr const char* kName      for `plan`, run.json and tests
-///   void declare(Fields&)                   its top-level key of the scene
 ///   bool on() const; std::string why() const
 struct Effect {
-  /// Numbers per particle, by name, that a set needs; `yields`: whether its material has a return map.
-  std::vector<std::string> channels(bool yields) const {
-    static_cast<void>(yields);
-    return {};
-  }
-  /// Passes over nodes, and after order events.
+  /// Its keys: of the scene, and of a material that yields.
+  void declare(Fields&) {}
+  void declare_in_sand(Fields&, const std::string& /*material*/) {}
+
+  /// Builds shapes, reads files; once, before anything below, and only where the effect is on.
+  Result<void> prepare(const Surroundings&) { return {}; }
+
+  std::vector<Channel> channels(const SetDescription&) const { return {}; }
+  /// Whether particles of the set yield by numbers of their own, which passes before the return map have put
+  /// into Scratch::yield, rather than by those of their material alone.
+  bool shapes_yield(const SetDescription&) const { return false; }
+
+  /// Fills channels, or changes velocity and strain, of particles that begin.
+  template <class Real>
+  void initialize(Newcomers<Real>&) const {}
+
+  /// Passes over nodes, and those that go with order events, frames and steps.
   template <class Real>
   void add_to_nodes(Assembly<Real>&) const {}
-  /// Passes of set k just before and just after its return map.
+  /// Passes of set k after its particles have moved and before its trial strain is formed.
+  template <class Real>
+  void add_after_motion(Assembly<Real>&, std::size_t) const {}
+  /// Passes of set k just before and just after its return map. Those after run in the list's reverse order: an
+  /// effect's two halves enclose those of the effects that follow it in the list.
   template <class Real>
   void add_before_return(Assembly<Real>&, std::size_t) const {}
   template <class Real>
   void add_after_return(Assembly<Real>&, std::size_t) const {}
+};
+
+/// Parameters that a scene gives per material, under a key of the material.
+template <class Parameters>
+struct SandEffect : Effect {
+  struct Entry {
+    std::string material;
+    Parameters parameters;
+  };
+  std::vector<Entry> entries;
+
+  bool on() const { return !entries.empty(); }
+  const Parameters* find(const SetDescription& set) const {
+    for (const Entry& entry : entries) {
+      if (entry.material == set.material) return &entry.parameters;
+    }
+    return nullptr;
+  }
+  bool shapes_yield(const SetDescription& set) const { return find(set) != nullptr; }
+
+  /// Declares the key `name`; `describe(fields, parameters)` its members.
+  template <class Describe>
+  void declare_entry(Fields& fields, const char* name, const char* meaning, const std::string& material,
+                     Describe describe) {
+    bool given = false;
+    Parameters parameters;
+    fields.object(name, given, false, meaning, [&](Fields& f) { describe(f, parameters); });
+    if (given) entries.push_back({material, parameters});
+  }
+  std::string why_by(const char* name) const {
+    if (entries.empty()) return std::string("no key '") + name + "' in a material";
+    std::string keys;
+    for (const Entry& entry : entries) {
+      keys += (keys.empty() ? "" : ", ") + ("materials." + entry.material + "." + name);
+    }
+    return keys;
+  }
 };
 
 }  // namespace repose

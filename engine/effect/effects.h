@@ -20,4 +20,14 @@ void for_each_effect(List& effects, Visit visit) {
   std::apply([&](auto&... effect) { (visit(effect), ...); }, effects);
 }
 
+/// The same from the last to the first.
+template <class List, class Visit>
+void for_each_effect_reversed(List& effects, Visit visit) {
+  constexpr std::size_t kCount = std::tuple_size_v<std::remove_const_t<List>>;
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (visit(std::get<kCount - 1 - k>(effects)), ...);
+  }
+  (std::make_index_sequence<kCount>());
+}
+
 }  // namespace repose

@@ -20,8 +20,8 @@ struct VolumeCorrection : Effect {
   bool on() const { return enabled; }
   std::string why() const { return enabled ? "key 'volume_correction'" : "no key 'volume_correction'"; }
 
-  std::vector<std::string> channels(bool yields) const {
-    return enabled && yields ? std::vector<std::string>{kGained} : std::vector<std::string>{};
+  std::vector<Channel> channels(const SetDescription& set) const {
+    return enabled && set.yields() ? std::vector<Channel>{{kGained}} : std::vector<Channel>{};
   }
   template <class Real>
   void add_before_return(Assembly<Real>& assembly, std::size_t set) const;

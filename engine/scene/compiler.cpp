@@ -45,14 +45,43 @@ const MaterialDescription& material_of(const Scene& scene, int index) {
 
 template <class Real>
 MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const MaterialDescription& material) {
-  MaterialRuntime<Real> runtime{kernels.material[material.law()], nullptr};
+  MaterialRuntime<Real> runtime{kernels.material[material.law()], nullptr, Real(0)};
   std::visit(
       [&runtime](const auto& parameters) {
         using Constants = typename std::decay_t<decltype(parameters)>::template Constants<Real>;
-        runtime.constants = std::make_shared<Constants>(parameters);
+        const auto constants = std::make_shared<Constants>(parameters);
+        if constexpr (std::decay_t<decltype(parameters)>::kYields) runtime.cone = constants->cone;
+        runtime.constants = constants;
       },
       material.parameters);
   return runtime;
+}
+
+Result<void> prepare(Effects& effects, const Surroundings& surroundings) {
+  Result<void> ready;
+  for_each_effect(effects, [&](auto& effect) {
+    if (ready && effect.on()) ready = effect.prepare(surroundings);
+  });
+  return ready;
+}
+
+template <class Real>
+void add_channels(const Effects& effects, const SetDescription& description, ParticleSet<Real>& set) {
+  for_each_effect(effects, [&](const auto& effect) {
+    for (const Channel& channel : effect.channels(description)) set.extra.push_back({channel.name, {}});
+  });
+}
+
+/// Channels of particles that begin take their initial values, then effects may change what they are.
+template <class Real>
+void initialize(const Effects& effects, Newcomers<Real>& newcomers) {
+  for_each_effect(effects, [&](const auto& effect) {
+    for (const Channel& channel : effect.channels(newcomers.description)) {
+      Real* const values = newcomers.set.extra[newcomers.set.extra_index(channel.name)].values.data();
+      std::fill(values + newcomers.first, values + newcomers.last, static_cast<Real>(channel.initial));
+    }
+    if (effect.on()) effect.initialize(newcomers);
+  });
 }
 
 /// Fills a set with the seeds of a body: rest, but for the body's motion.
@@ -119,8 +148,39 @@ Result<void> check_memory(const Scene& scene, double particles, double limit) {
                scene.where("grid.spacing")};
 }
 
+Surroundings surroundings_of(const Scene& scene, const CompileOptions& options) {
+  Surroundings around;
+  around.spacing = scene.grid.spacing;
+  around.flat_axis = scene.grid.plane_strain.value_or(-1);
+  around.up = scene.up == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+  around.gravity = scene.effect<Gravity>().acceleration;
+  around.folder = scene.folder;
+  around.allow_outside_paths = options.allow_outside_paths;
+  around.where = [places = scene.places](const std::string& key) {
+    const auto place = places.find(key);
+    return place == places.end() ? key : place->second + ": " + key;
+  };
+  return around;
+}
+
+/// What the passes of one scene are made from.
 template <class Real>
-Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, State<Real>& state) {
+struct Compilation {
+  const Scene& scene;
+  const CompileOptions& options;
+  Surroundings surroundings;
+  Effects effects;  ///< ready: with their shapes and files
+  std::vector<SetDescription> sets;
+};
+
+SetDescription set_description(const Scene& scene, const std::string& name, int material) {
+  return {name, material_of(scene, material).name, material_of(scene, material).parameters};
+}
+
+template <class Real>
+Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
+  const Scene& scene = compilation.scene;
+  const CompileOptions& options = compilation.options;
   std::vector<std::shared_ptr<const Shape>> shapes;
   double particles = 0.0;
   for (const BodyDescription& body : scene.bodies) {
@@ -147,12 +207,22 @@ Result<void> seed_bodies(const Scene& scene, const CompileOptions& options, Stat
     ParticleSet<Real> set;
     set.material = material_index(scene, body.material);
     set.keeps_affine = transfer_choice(scene).keeps_affine();
-    const bool yields = material_of(scene, set.material).yields();
-    for_each_effect(scene.effects, [&](const auto& effect) {
-      for (const std::string& channel : effect.channels(yields)) set.extra.push_back({channel, {}});
-    });
+    compilation.sets.push_back(set_description(scene, body.name, set.material));
+    const SetDescription& description = compilation.sets.back();
+    add_channels(compilation.effects, description, set);
     fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), std::move(*seeds), next_id, set,
              cells.emplace_back());
+    const auto& at = cells.back();  // in cells of the lattice
+    Newcomers<Real> newcomers{
+        set, 0, set.count, description, compilation.surroundings, [&](std::size_t p) {
+          Vec3 x;
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto cell = static_cast<double>(at[p][axis] - scene.grid.origin_cells[axis]);
+            x[static_cast<int>(axis)] = (cell + double(set.position[axis][p])) * scene.grid.spacing;
+          }
+          return x;
+        }};
+    initialize(compilation.effects, newcomers);
     next_id += static_cast<std::uint32_t>(set.count);
     // Spin strains whether or not particles store C; its matrix has the norm sqrt(2) |w|.
     const double spin = std::sqrt(2.0) * body.angular_velocity.norm();
@@ -180,8 +250,10 @@ StepLimits step_limits(const Scene& scene) {
 }
 
 template <class Real>
-StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, const State<Real>& state,
+StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Real>& state,
                             const std::vector<Solid>& solids) {
+  const Scene& scene = compilation.scene;
+  const CompileOptions& options = compilation.options;
   StepPlan<Real> plan;
   plan.kernels = &kernels<Real>(options.target);
   plan.transfer = transfer_choice(scene);
@@ -205,13 +277,13 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
   }
 
   // Nodes.
-  Assembly<Real> assembly{plan, state, solids};
+  Assembly<Real> assembly{plan, state, solids, compilation.sets, compilation.surroundings};
   plan.nodes.push_back(normalize_pass(plan));  // v* = p/m
   if (plan.transfer.figures().keeps_velocity) {
     plan.order.push_back(before_forces_room_pass<Real>());
     plan.nodes.push_back(before_forces_pass(plan));
   }
-  for_each_effect(scene.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
+  for_each_effect(compilation.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
     if (effect.on()) effect.add_to_nodes(assembly);
   });
 
@@ -219,16 +291,26 @@ StepPlan<Real> compile_plan(const Scene& scene, const CompileOptions& options, c
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     const MaterialDescription& description = material_of(scene, state.sets[k].material);
     const MaterialRuntime<Real> material = make_material(*plan.kernels, description);
-    auto& passes = plan.gather.emplace_back();
+    plan.gather.emplace_back();
+    auto& passes = plan.gather[k];
     passes.push_back(gather_pass(plan, lattice));  // v and C, and the velocity that moves
     passes.push_back(advance_pass(plan));          // x += dt v
-    passes.push_back(trial_pass(material));        // strain of the step
+    for_each_effect(compilation.effects, [&](const auto& effect) {
+      if (effect.on()) effect.add_after_motion(assembly, k);
+    });
+    passes.push_back(trial_pass(material));  // strain of the step
     if (!description.yields()) continue;
-    for_each_effect(scene.effects, [&](const auto& effect) {
+    bool shaped = false;
+    for_each_effect(compilation.effects, [&](const auto& effect) {
+      shaped = shaped || (effect.on() && effect.shapes_yield(compilation.sets[k]));
+    });
+    if (shaped)
+      passes.push_back(yield_surface_pass(material));  // numbers of the material, for effects to change
+    for_each_effect(compilation.effects, [&](const auto& effect) {
       if (effect.on()) effect.add_before_return(assembly, k);
     });
-    plan.gather[k].push_back(project_pass(material));  // back to the yield surface
-    for_each_effect(scene.effects, [&](const auto& effect) {
+    passes.push_back(shaped ? project_shaped_pass(material) : project_pass(material));  // to the yield surface
+    for_each_effect_reversed(compilation.effects, [&](const auto& effect) {
       if (effect.on()) effect.add_after_return(assembly, k);
     });
   }
@@ -261,10 +343,12 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   auto solids = build_solids(scene, options.allow_outside_paths);
   if (!solids) return solids.error();
   compiled.solids = std::move(*solids);
-  if (auto seeded = seed_bodies(scene, options, state); !seeded) return seeded.error();
+  Compilation<Real> compilation{scene, options, surroundings_of(scene, options), scene.effects, {}};
+  if (auto ready = prepare(compilation.effects, compilation.surroundings); !ready) return ready.error();
+  if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
   set_initial_speed(state);
-  compiled.plan = compile_plan(scene, options, state, compiled.solids);
-  if (auto valid = compiled.plan.validate(); !valid) return valid.error();
+  compiled.plan = compile_plan(compilation, state, compiled.solids);
+  if (auto valid = compiled.plan.validate(state); !valid) return valid.error();
   return compiled;
 }
 
@@ -274,8 +358,8 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
   for_each_effect(scene.effects, [&](const auto& effect) {
     std::size_t channels = 0;  // of the set that has most
     for (const BodyDescription& body : scene.bodies) {
-      const bool yields = material_of(scene, material_index(scene, body.material)).yields();
-      channels = std::max(channels, effect.channels(yields).size());
+      const SetDescription set = set_description(scene, body.name, material_index(scene, body.material));
+      channels = std::max(channels, effect.channels(set).size());
     }
     list.push_back({effect.kName, effect.on(), effect.why(), channels * real});
   });

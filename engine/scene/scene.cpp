@@ -119,21 +119,28 @@ void describe_time(Fields& fields, TimeDescription& time) {
   share("strain", time.strain, "largest velocity gradient times step");
 }
 
-/// One alternative per material of the list; choosing one makes it the material's law.
+/// One alternative per material of the list; choosing one makes it the material's law. What yields may also
+/// have the keys of the effects that act on sand.
 template <std::size_t... k>
-void describe_law(Fields& fields, MaterialParameters& law, std::index_sequence<k...>) {
+void describe_law(Fields& fields, Scene& scene, MaterialDescription& material, std::index_sequence<k...>) {
+  const auto describe_as = [&]<std::size_t chosen>(std::integral_constant<std::size_t, chosen>, Fields& f) {
+    MaterialParameters& law = material.parameters;
+    if (law.index() != chosen) law.emplace<chosen>();
+    std::get<chosen>(law).describe(f);
+    if constexpr (std::variant_alternative_t<chosen, MaterialParameters>::kYields) {
+      for_each_effect(scene.effects, [&](auto& effect) { effect.declare_in_sand(f, material.name); });
+    }
+  };
   const Alternative laws[] = {{std::variant_alternative_t<k, MaterialParameters>::kName,
-                               std::variant_alternative_t<k, MaterialParameters>::kMeaning, [&law](Fields& f) {
-                                 if (law.index() != k) law.emplace<k>();
-                                 std::get<k>(law).describe(f);
+                               std::variant_alternative_t<k, MaterialParameters>::kMeaning, [&](Fields& f) {
+                                 describe_as(std::integral_constant<std::size_t, k>(), f);
                                }}...};
-  int chosen = static_cast<int>(law.index());
+  int chosen = material.law();
   fields.alternatives(chosen, laws, "the law of the material");
 }
 
-void describe_material(Fields& fields, MaterialDescription& material) {
-  describe_law(fields, material.parameters,
-               std::make_index_sequence<std::variant_size_v<MaterialParameters>>());
+void describe_material(Fields& fields, Scene& scene, MaterialDescription& material) {
+  describe_law(fields, scene, material, std::make_index_sequence<std::variant_size_v<MaterialParameters>>());
 }
 
 void describe_body(Fields& fields, BodyDescription& body) {
@@ -188,7 +195,7 @@ void describe_materials(Fields& fields, Scene& scene) {
   fields.dictionary("materials", true, "the materials, by name", [&](const std::string& name, Fields& f) {
     MaterialDescription material;
     material.name = name;
-    describe_material(f, material);
+    describe_material(f, scene, material);
     scene.materials.push_back(material);
   });
 }

@@ -5,8 +5,8 @@
 namespace repose {
 namespace {
 
-/// What a state holds before its first step.
-const std::set<std::string> kInitial{"position", "velocity", "affine", "strain", "topology", "volume_gained"};
+/// What every state holds before its first step.
+const std::set<std::string> kInitial{"position", "velocity", "affine", "strain", "topology"};
 
 Result<void> follow(const PassDescription& pass, std::set<std::string>& known) {
   for (const std::string& quantity : pass.reads) {
@@ -30,22 +30,27 @@ Result<void> follow_all(const Passes& passes, std::set<std::string>& known) {
 }  // namespace
 
 template <class Real>
-Result<void> StepPlan<Real>::validate() const {
+Result<void> StepPlan<Real>::validate(const State<Real>& state) const {
   std::set<std::string> after_order = kInitial;
   if (auto result = follow_all(order, after_order); !result) return result;
+  const auto with_channels = [&state](std::set<std::string> known, std::size_t set) {
+    if (set >= state.sets.size()) return known;
+    for (const auto& channel : state.sets[set].extra) known.insert(channel.name);
+    return known;
+  };
   std::set<std::string> on_nodes = after_order;
-  for (const auto& passes : scatter) {
-    std::set<std::string> known = after_order;
-    if (auto result = follow_all(passes, known); !result) return result;
+  for (std::size_t k = 0; k < scatter.size(); ++k) {
+    std::set<std::string> known = with_channels(after_order, k);
+    if (auto result = follow_all(scatter[k], known); !result) return result;
     // What a chunk hands on in scratch ends with it; what it left on the nodes stays.
     for (const std::string& quantity : known) {
       if (quantity.starts_with("node ")) on_nodes.insert(quantity);
     }
   }
   if (auto result = follow_all(nodes, on_nodes); !result) return result;
-  for (const auto& passes : gather) {
-    std::set<std::string> known = on_nodes;
-    if (auto result = follow_all(passes, known); !result) return result;
+  for (std::size_t k = 0; k < gather.size(); ++k) {
+    std::set<std::string> known = with_channels(on_nodes, k);
+    if (auto result = follow_all(gather[k], known); !result) return result;
   }
   return {};
 }

@@ -25,8 +25,13 @@ struct Scratch {
   AlignedArray<Real> velocity{3 * kChunk};
   AlignedArray<Real> before{3 * kChunk};  ///< velocity before forces, at the particles
   AlignedArray<Real> affine{kAffineComponents * kChunk};
-  AlignedArray<Real> value{
-      kChunk};  ///< one number per particle, from the first half of an effect to its second
+  /// One number per particle, from the first half of an effect to its second.
+  AlignedArray<Real> value{kChunk};
+  /// Where sand yields by numbers of its own: they, and what yielding did (YieldInput).
+  struct {
+    AlignedArray<Real> cone{kChunk}, cohesion{kChunk}, tension{kChunk}, dilatancy{kChunk};
+    AlignedArray<Real> plastic{kChunk}, dilated{kChunk};
+  } yield;
 };
 
 /// At most kChunk particles of one block and one set, on their way through the passes.
@@ -134,8 +139,9 @@ struct StepPlan {
   std::vector<NodePass<Real>> nodes;
   std::vector<std::vector<ParticlePass<Real>>> gather;  ///< per set
 
-  /// Refuses a plan in which a pass reads what nothing before it provides, naming pass and quantity.
-  Result<void> validate() const;
+  /// Refuses a plan in which a pass reads what nothing before it provides, naming pass and quantity. `state`
+  /// holds the sets, whose channels are there from the start.
+  Result<void> validate(const State<Real>& state) const;
 };
 
 }  // namespace repose

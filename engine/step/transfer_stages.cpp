@@ -1,6 +1,7 @@
 #include "engine/step/transfer_stages.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace repose {
 namespace {
@@ -137,6 +138,33 @@ ParticlePass<Real> project_pass(const MaterialRuntime<Real>& material) {
 }
 
 template <class Real>
+ParticlePass<Real> yield_surface_pass(const MaterialRuntime<Real>& material) {
+  return {{"yield surface", "", {}, {"cone", "cohesion", "tension", "dilatancy"}},
+          [cone = material.cone](Chunk<Real>& chunk) {
+            auto& yield = chunk.scratch.yield;
+            const std::size_t count = chunk.particles.count;
+            std::fill_n(yield.cone.data(), count, cone);
+            std::fill_n(yield.cohesion.data(), count, Real(0));
+            std::fill_n(yield.tension.data(), count, std::numeric_limits<Real>::max());
+            std::fill_n(yield.dilatancy.data(), count, Real(0));
+          }};
+}
+
+template <class Real>
+ParticlePass<Real> project_shaped_pass(const MaterialRuntime<Real>& material) {
+  return {{"return map, shaped",
+           "",
+           {"trial strain", "cone", "cohesion", "tension", "dilatancy"},
+           {"strain", "plastic strain", "dilated"}},
+          [material](Chunk<Real>& chunk) {
+            auto& yield = chunk.scratch.yield;
+            const YieldInput<Real> surface{yield.cone.data(),      yield.cohesion.data(), yield.tension.data(),
+                                           yield.dilatancy.data(), yield.plastic.data(),  yield.dilated.data()};
+            material.kernels.project_shaped(material_input(material, chunk), surface);
+          }};
+}
+
+template <class Real>
 NodePass<Real> normalize_pass(const StepPlan<Real>& plan) {
   const auto kernel = plan.kernels->normalize;
   const Real least_mass = plan.least_mass;
@@ -173,6 +201,8 @@ NodePass<Real> before_forces_pass(const StepPlan<Real>& plan) {
   template ParticlePass<Real> advance_pass(const StepPlan<Real>&);                       \
   template ParticlePass<Real> trial_pass(const MaterialRuntime<Real>&);                  \
   template ParticlePass<Real> project_pass(const MaterialRuntime<Real>&);                \
+  template ParticlePass<Real> yield_surface_pass(const MaterialRuntime<Real>&);          \
+  template ParticlePass<Real> project_shaped_pass(const MaterialRuntime<Real>&);         \
   template NodePass<Real> normalize_pass(const StepPlan<Real>&);                         \
   template OrderPass<Real> before_forces_room_pass();                                    \
   template NodePass<Real> before_forces_pass(const StepPlan<Real>&);

@@ -15,6 +15,7 @@ template <class Real>
 struct MaterialRuntime {
   MaterialKernels<Real> kernels;
   std::shared_ptr<const void> constants;  ///< the material's Constants<Real>
+  Real cone = 0;                          ///< of a material that yields: bc
 };
 
 template <class Real>
@@ -33,6 +34,13 @@ ParticlePass<Real> trial_pass(const MaterialRuntime<Real>& material);
 /// Only for materials that yield.
 template <class Real>
 ParticlePass<Real> project_pass(const MaterialRuntime<Real>& material);
+
+/// The same in two passes for particles that yield by numbers of their own: those of the material, on which
+/// effects then work, and the return map that reads them.
+template <class Real>
+ParticlePass<Real> yield_surface_pass(const MaterialRuntime<Real>& material);
+template <class Real>
+ParticlePass<Real> project_shaped_pass(const MaterialRuntime<Real>& material);
 
 /// p -> v = p/m, and which nodes are active.
 template <class Real>

@@ -8,6 +8,13 @@
 //     I   dg <= 0   H = eps                inside the cone
 //     III else      H = eps - dg e/n       back to the cone at the same pressure
 //
+// Sand of a scene that asks for cohesion, dilatancy, hardening and the like yields by numbers per particle:
+//   yield      |dev tau| <= c_C - alpha tr(tau),  that is  n <= k - bc t,  k = c_C / (2 mu);  and t <= t_max
+//   flow       e/n + bD I                                               (bD = 0 above, bD = alpha associated)
+//   return     dg = (n + bc t - k) / (1 + 3 bD bc) in [0, n],  H = eps - dg (e/n + bD I)
+//              and if that leaves t > t_m = min(t_max, k/bc):  t_m, with |dev H| = min(n, k - bc t_m)
+// With k = 0 and bD = 0 these are the three cases: t_m = 0, and at it nothing is left of the deviator.
+//
 // Case II comes first: with alpha = 0, e = 0 and t > 0 the paper's order would keep a tensile state.
 // The projection reads only t and n, so it acts on the strain tensor itself and needs no eigenvectors.
 #ifndef REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H_PARAMETERS
@@ -53,21 +60,35 @@ struct DruckerPragerParameters {
   ConeMatching matching = ConeMatching::kTriaxialCompression;
 
   /// Slope alpha of the cone: alpha tr(tau) + |dev tau| <= 0.
-  double cone_slope() const {
-    const double phi = friction_angle * std::numbers::pi / 180.0;
-    const double sine = std::sin(phi);
-    const double tangent = std::tan(phi);
+  double cone_slope() const { return cone_slope_at(friction_angle); }
+  /// The same for another angle, degrees.
+  double cone_slope_at(double angle) const {
+    const double sine = std::sin(angle * std::numbers::pi / 180.0);
+    return sine * slope_over_sine(sine);
+  }
+  /// alpha / sin(phi), which has a limit where phi is zero.
+  double slope_over_sine(double sine) const {
     switch (matching) {
       case ConeMatching::kTriaxialCompression:
-        return std::sqrt(2.0 / 3.0) * 2.0 * sine / (3.0 - sine);
+        return std::sqrt(2.0 / 3.0) * 2.0 / (3.0 - sine);
       case ConeMatching::kPlaneStrain:
-        return std::sqrt(2.0) / 3.0 * sine;
+        return std::sqrt(2.0) / 3.0;
       case ConeMatching::kPlaneStrainAssociated:
-        return std::sqrt(2.0) * tangent / std::sqrt(9.0 + 12.0 * tangent * tangent);
+        return std::sqrt(2.0) / std::sqrt(9.0 + 3.0 * sine * sine);
       case ConeMatching::kTwoDimensional:
-        return sine / std::sqrt(2.0);
+        return 1.0 / std::sqrt(2.0);
     }
     return 0.0;
+  }
+  /// bc = alpha (3 lambda + 2 mu) / (2 mu), of a slope alpha.
+  double cone_of_slope(double slope) const {
+    return slope * (3.0 * elasticity.lambda() + 2.0 * elasticity.mu()) / (2.0 * elasticity.mu());
+  }
+  /// k = c_C / (2 mu) of a cohesion c in Pa, at the material's angle and matching. In all of these matchings
+  /// c_C = 3 alpha c cot(phi): the cone's apex is that of Mohr-Coulomb.
+  double cohesion_strain(double cohesion) const {
+    const double phi = friction_angle * std::numbers::pi / 180.0;
+    return 3.0 * slope_over_sine(std::sin(phi)) * std::cos(phi) * cohesion / (2.0 * elasticity.mu());
   }
 
   template <class Fields>
@@ -91,9 +112,7 @@ struct DruckerPragerConstants {
   Real cone;  ///< bc = alpha (3 lambda + 2 mu) / (2 mu)
 
   explicit DruckerPragerConstants(const DruckerPragerParameters& p)
-      : elastic(p.elasticity),
-        cone(static_cast<Real>(p.cone_slope() * (3.0 * p.elasticity.lambda() + 2.0 * p.elasticity.mu()) /
-                               (2.0 * p.elasticity.mu()))) {}
+      : elastic(p.elasticity), cone(static_cast<Real>(p.cone_of_slope(p.cone_slope()))) {}
 };
 
 }  // namespace repose
@@ -141,6 +160,37 @@ struct DruckerPrager {
     const Sym3<N> yielded = plus_identity(kept * e, mean);
     const Sym3<N> nothing{zero, zero, zero, zero, zero, zero};
     return select(opened, nothing, select(inside, eps, yielded));
+  }
+
+  /// The same by numbers per particle (YieldInput): the strain, what it lost, and by how much shear opened it.
+  template <class N>
+  struct Shaped {
+    Sym3<N> strain;
+    N plastic;  ///< |eps - strain|
+    N dilated;  ///< 3 bD dg
+  };
+  template <class N>
+  REPOSE_INLINE static Shaped<N> project_shaped(const Sym3<N>& eps, N cone, N cohesion, N tension,
+                                                N dilatancy) {
+    using T = Scalar<N>;
+    const N zero(T(0)), one(T(1)), third(T(1) / 3), tiny(std::numeric_limits<T>::min());
+    const N t = trace(eps);
+    const Sym3<N> e = plus_identity(eps, -(t * third));
+    const N n = sqrt(square_norm(e));
+    const N opening = N(T(3)) * dilatancy;
+    const N dg = min(max(fma(cone, t, n - cohesion) / fma(opening, cone, one), zero), n);
+    const N sheared = fnma(opening, dg, t);
+    const N most = min(tension, cohesion / max(cone, tiny));
+    const auto opened = sheared > most;
+    const N kept_norm = select(opened, min(n, max(fnma(cone, most, cohesion), zero)), n - dg);
+    const N kept = select(n > tiny, kept_norm / max(n, tiny), one);
+    const N left = select(opened, most, sheared);
+    // Inside the cone nothing may change, not even by rounding.
+    const auto inside = (dg <= zero) & (t <= most);
+    const N lost = n - kept_norm, change = (t - left) * third;
+    const N plastic = sqrt(fma(lost, lost, N(T(3)) * change * change));
+    return {select(inside, eps, plus_identity(kept * e, left * third)), select(inside, zero, plastic),
+            select(opened, zero, opening * dg)};
   }
 };
 

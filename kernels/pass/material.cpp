@@ -58,6 +58,21 @@ void project(const MaterialInput<T>& in) {
 }
 
 template <class Material, class T>
+void project_shaped(const MaterialInput<T>& in, const YieldInput<T>& surface) {
+  using P = Pack<T>;
+  for (const auto [first, lanes] : packs<T>(in.count)) {
+    const auto number = [first = first, lanes = lanes](const T* from)
+                            HWY_ATTR { return P::load_first(from + first, lanes); };
+    const auto done =
+        Material::project_shaped(load_sym3<T>(in.strain, first, lanes), number(surface.cone),
+                                 number(surface.cohesion), number(surface.tension), number(surface.dilatancy));
+    store_sym3(done.strain, in.strain, first, lanes);
+    done.plastic.store_first(surface.plastic + first, lanes);
+    done.dilated.store_first(surface.dilated + first, lanes);
+  }
+}
+
+template <class Material, class T>
 void stress(const MaterialInput<T>& in) {
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
   for (const auto [first, lanes] : packs<T>(in.count)) {
@@ -69,8 +84,11 @@ void stress(const MaterialInput<T>& in) {
 
 template <class Material, class T>
 MaterialKernels<T> material_kernels() {
-  MaterialKernels<T> table{trial<T>, nullptr, stress<Material, T>};
-  if constexpr (Material::Parameters::kYields) table.project = project<Material, T>;
+  MaterialKernels<T> table{trial<T>, nullptr, stress<Material, T>, nullptr};
+  if constexpr (Material::Parameters::kYields) {
+    table.project = project<Material, T>;
+    table.project_shaped = project_shaped<Material, T>;
+  }
   return table;
 }
 

@@ -89,12 +89,26 @@ struct MaterialInput {
   std::ptrdiff_t ahead = 0;  ///< as in ParticleSpan
 };
 
+/// The yield surface of each particle of a span, |dev eps| <= cohesion - cone tr(eps) with tr(eps) <= tension,
+/// and what yielding did.
+template <class Real>
+struct YieldInput {
+  const Real* cone;       ///< bc = alpha (3 lambda + 2 mu) / (2 mu)
+  const Real* cohesion;   ///< k = c_C / (2 mu), c_C the norm of the deviator that holds at no pressure
+  const Real* tension;    ///< largest trace that is kept; the apex of the cone bounds it too
+  const Real* dilatancy;  ///< bD: the flow e/|e| + bD I opens the sand by 3 bD per unit of shear
+  Real* plastic;          ///< out: |trial - returned|
+  Real* dilated;          ///< out: 3 bD dg, the log volume that shear has opened
+};
+
 template <class Real>
 struct MaterialKernels {
   void (*trial)(const MaterialInput<Real>&);  ///< strain <- elastic trial strain after dt of the gradient
   void (*project)(
       const MaterialInput<Real>&);  ///< strain <- the strain that the yield surface allows; may be null
   void (*stress)(const MaterialInput<Real>&);  ///< stress <- tau(strain)
+  /// As project, by numbers per particle; null where project is.
+  void (*project_shaped)(const MaterialInput<Real>&, const YieldInput<Real>&);
 };
 
 template <class Real>

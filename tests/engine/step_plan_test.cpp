@@ -35,7 +35,7 @@ StepPlan<float> sound_plan() {
 }
 
 std::string refusal(const StepPlan<float>& plan) {
-  const auto valid = plan.validate();
+  const auto valid = plan.validate(State<float>());
   return valid ? "" : valid.error().text();
 }
 
