@@ -28,6 +28,8 @@ struct SetDescription {
   const Elasticity& elasticity() const {
     return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
   }
+  /// The numbers of its cone; only for a set that yields.
+  const DruckerPragerParameters& sand() const { return std::get<DruckerPragerParameters>(parameters); }
 };
 
 /// One number per particle that an effect keeps.

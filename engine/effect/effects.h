@@ -4,15 +4,29 @@
 
 #include <tuple>
 
+#include "engine/effect/cohesion.h"
 #include "engine/effect/collider.h"
+#include "engine/effect/dilatancy.h"
 #include "engine/effect/gravity.h"
+#include "engine/effect/hardening.h"
+#include "engine/effect/moisture.h"
+#include "engine/effect/prestress.h"
+#include "engine/effect/rate_friction.h"
+#include "engine/effect/variation.h"
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
 
-using Effects = std::tuple<Gravity,            // v += dt g
-                           Colliders,          // v* -> v-bar -> v-tilde: last of the node passes
-                           VolumeCorrection>;  // around the return map
+using Effects = std::tuple<Gravity,           // v += dt g
+                           Colliders,         // v* -> v-bar -> v-tilde: last of the node passes
+                           Prestress,         // bodies begin under their weight
+                           VolumeCorrection,  // around the return map, and around all that follows here
+                           Hardening,         // cone <- that of the shear so far
+                           Cohesion,          // cohesion, tension
+                           Moisture,          // cohesion +
+                           Variation,         // cone *, cohesion *
+                           Dilatancy,         // dilatancy, and what it opens
+                           RateFriction>;     // cone +, by the trial strain: last of the cone
 
 /// Calls visit(effect) for each effect of the list, in order.
 template <class List, class Visit>

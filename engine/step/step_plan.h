@@ -30,7 +30,7 @@ struct Scratch {
   /// Where sand yields by numbers of its own: they, and what yielding did (YieldInput).
   struct {
     AlignedArray<Real> cone{kChunk}, cohesion{kChunk}, tension{kChunk}, dilatancy{kChunk};
-    AlignedArray<Real> plastic{kChunk}, dilated{kChunk};
+    AlignedArray<Real> plastic{kChunk}, sheared{kChunk}, dilated{kChunk};
   } yield;
 };
 
@@ -43,12 +43,17 @@ struct Chunk {
   Scratch<Real>& scratch;
   Real dt;
   double spacing;               ///< dx, m
+  double time;                  ///< at the start of the step, s
+  Vec3 origin;                  ///< of the block, in the scene's frame, m
   bool two_velocities = false;  ///< whether particles keep another velocity than the one that moves them
   std::uint64_t rows = 0;       ///< arena rows touched
   std::size_t runs = 0;
   const Real* moving_velocity[3] = {};                  ///< what moves positions, m/s; set by the gather
   const Real* moving_gradient[kAffineComponents] = {};  ///< what strains, 1/s
-  Motion<Real> motion;
+  Motion<Real> motion{};
+
+  /// Position in metres of a point `offset` cells from the block's origin.
+  Vec3 world(const Vec3& offset) const { return origin + spacing * offset; }
 };
 
 /// The nodes of one block.

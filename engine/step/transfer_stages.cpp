@@ -159,7 +159,8 @@ ParticlePass<Real> project_shaped_pass(const MaterialRuntime<Real>& material) {
           [material](Chunk<Real>& chunk) {
             auto& yield = chunk.scratch.yield;
             const YieldInput<Real> surface{yield.cone.data(),      yield.cohesion.data(), yield.tension.data(),
-                                           yield.dilatancy.data(), yield.plastic.data(),  yield.dilated.data()};
+                                           yield.dilatancy.data(), yield.plastic.data(),  yield.sheared.data(),
+                                           yield.dilated.data()};
             material.kernels.project_shaped(material_input(material, chunk), surface);
           }};
 }

@@ -167,6 +167,7 @@ struct DruckerPrager {
   struct Shaped {
     Sym3<N> strain;
     N plastic;  ///< |eps - strain|
+    N sheared;  ///< the same, but 0 where the sand has opened
     N dilated;  ///< 3 bD dg
   };
   template <class N>
@@ -189,7 +190,8 @@ struct DruckerPrager {
     const auto inside = (dg <= zero) & (t <= most);
     const N lost = n - kept_norm, change = (t - left) * third;
     const N plastic = sqrt(fma(lost, lost, N(T(3)) * change * change));
-    return {select(inside, eps, plus_identity(kept * e, left * third)), select(inside, zero, plastic),
+    const N yielded = select(inside, zero, plastic);
+    return {select(inside, eps, plus_identity(kept * e, left * third)), yielded, select(opened, zero, yielded),
             select(opened, zero, opening * dg)};
   }
 };

@@ -68,6 +68,7 @@ void project_shaped(const MaterialInput<T>& in, const YieldInput<T>& surface) {
                                  number(surface.cohesion), number(surface.tension), number(surface.dilatancy));
     store_sym3(done.strain, in.strain, first, lanes);
     done.plastic.store_first(surface.plastic + first, lanes);
+    done.sheared.store_first(surface.sheared + first, lanes);
     done.dilated.store_first(surface.dilated + first, lanes);
   }
 }

@@ -13,6 +13,7 @@ KernelTables make_tables(Target target) {
   fill_gather(target, tables);
   fill_material(target, tables);
   fill_particles(target, tables);
+  fill_yield(target, tables);
   fill_nodes(target, tables);
   return tables;
 }

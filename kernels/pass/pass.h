@@ -98,7 +98,26 @@ struct YieldInput {
   const Real* tension;    ///< largest trace that is kept; the apex of the cone bounds it too
   const Real* dilatancy;  ///< bD: the flow e/|e| + bD I opens the sand by 3 bD per unit of shear
   Real* plastic;          ///< out: |trial - returned|
+  Real* sheared;          ///< out: the same, but 0 where the sand has opened
   Real* dilated;          ///< out: 3 bD dg, the log volume that shear has opened
+};
+
+/// Friction that follows the plastic shear q (Klar et al. 2016, eqs. 29-31), in radians:
+///   phi = h0 + (h1 q - h3) exp(-h2 q),  cone = cone_over_slope alpha(phi)
+template <class Real>
+struct HardeningConstants {
+  Real h0, h1, h2, h3;
+  ConeMatching matching;
+  Real cone_over_slope;  ///< bc / alpha
+};
+
+/// Friction that follows the rate of shear, mu(I) (Jop et al. 2006), for one step of the return map:
+///   mu = mu_s + (mu_2 - mu_s) / (1 + I0 / I),  I = |shear rate| d / sqrt(p / rho_s)
+template <class Real>
+struct RateConstants {
+  Real rise;       ///< bc of mu_2 less that of mu_s
+  Real threshold;  ///< I0
+  Real inertia;    ///< sqrt(2 rho_s / K) d, in s: I = inertia dg / (dt sqrt(|t|))
 };
 
 template <class Real>
@@ -154,6 +173,12 @@ struct Kernels {
   std::size_t (*inspect)(const Real* const velocity[3], const Real* const affine[9], std::size_t count, Real dt,
                          Real spacing);
   void (*open_volume)(Real* const strain[6], const Real* gained, Real* trace, std::size_t count);
+  /// cone <- that of the plastic shear q of each particle.
+  void (*harden)(const Real* q, const HardeningConstants<Real>& law, Real* cone, std::size_t count);
+  /// cone <- the cone at which the trial strain comes to rest when friction rises with the rate of its own
+  /// plastic shear.
+  void (*quicken)(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
+                  Real* cone, std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
 
   /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 +

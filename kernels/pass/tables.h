@@ -57,6 +57,7 @@ void fill_scatter(Target target, KernelTables& tables);
 void fill_gather(Target target, KernelTables& tables);
 void fill_material(Target target, KernelTables& tables);
 void fill_particles(Target target, KernelTables& tables);
+void fill_yield(Target target, KernelTables& tables);
 void fill_nodes(Target target, KernelTables& tables);
 
 }  // namespace repose

@@ -1,0 +1,88 @@
+#include "engine/effect/hardening.h"
+
+#include <cmath>
+
+namespace repose {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+/// The largest angle that any q >= 0 gives, degrees: at the end, at the start, or where the slope vanishes.
+double largest_angle(const HardeningParameters& p) {
+  double most = std::max(p.h0, p.angle(0.0));
+  if (p.h1 > 0.0 && p.h2 > 0.0) most = std::max(most, p.angle(1.0 / p.h2 + p.h3 / p.h1));
+  return most;
+}
+
+}  // namespace
+
+void Hardening::declare_in_sand(Fields& fields, const std::string& material) {
+  const auto describe = [](Fields& f, HardeningParameters& p) {
+    f.number(
+        "h0", p.h0,
+        {.unit = "degrees", .meaning = "angle after long shear", .low = 0.0, .high = 90.0, .high_open = true});
+    f.number("h1", p.h1, {.unit = "degrees", .meaning = "what a unit of shear adds at first", .low = 0.0});
+    f.number("h2", p.h2,
+             {.meaning = "rate at which that, and h3, are forgotten", .low = 0.0, .low_open = true});
+    f.number("h3", p.h3, {.unit = "degrees", .meaning = "how far below h0 the angle begins", .low = 0.0});
+    f.number("initial", p.initial, {.meaning = "plastic shear q at the start", .low = 0.0});
+    f.flag("in_flight", p.in_flight, "whether sand that opens hardens too, as in Klar et al. 2016");
+    f.check(p.h3 < p.h0 || (p.h3 == 0.0 && p.h0 == 0.0), "h3",
+            "must be below h0, so that sand has friction from the start");
+    f.check(largest_angle(p) < 90.0, "h1", "lets the angle reach 90 degrees; less h1 or more h2");
+  };
+  declare_entry(
+      fields, kName,
+      "friction follows plastic shear q: phi = h0 + (h1 q - h3) exp(-h2 q), Klar et al. 2016, eqs. 29-31; "
+      "the angle replaces friction_angle in the cone",
+      material, describe);
+}
+
+std::vector<Channel> Hardening::channels(const SetDescription& set) const {
+  const HardeningParameters* p = find(set);
+  return p == nullptr ? std::vector<Channel>{} : std::vector<Channel>{{kShear, p->initial}};
+}
+
+template <class Real>
+void Hardening::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
+  const HardeningParameters* p = find(assembly.sets[set]);
+  if (p == nullptr) return;
+  const DruckerPragerParameters& sand = assembly.sets[set].sand();
+  const HardeningConstants<Real> law{static_cast<Real>(p->h0 * kRadians),
+                                     static_cast<Real>(p->h1 * kRadians),
+                                     static_cast<Real>(p->h2),
+                                     static_cast<Real>(p->h3 * kRadians),
+                                     sand.matching,
+                                     static_cast<Real>(sand.cone_of_slope(1.0))};
+  const std::size_t channel = assembly.state.sets[set].extra_index(kShear);
+  assembly.plan.gather[set].push_back(
+      {{"hardening, angle", why(), {kShear, "cone"}, {"cone"}},
+       [kernel = assembly.plan.kernels->harden, law, channel](Chunk<Real>& chunk) {
+         kernel(chunk.set.extra[channel].values.data() + chunk.first, law, chunk.scratch.yield.cone.data(),
+                chunk.particles.count);
+       }});
+}
+
+template <class Real>
+void Hardening::add_after_return(Assembly<Real>& assembly, std::size_t set) const {
+  const HardeningParameters* p = find(assembly.sets[set]);
+  if (p == nullptr) return;
+  const std::size_t channel = assembly.state.sets[set].extra_index(kShear);
+  assembly.plan.gather[set].push_back(
+      {{"hardening, shear", why(), {kShear, "plastic strain", "strain"}, {kShear}},
+       [channel, in_flight = p->in_flight](Chunk<Real>& chunk) {
+         Real* const q = chunk.set.extra[channel].values.data() + chunk.first;
+         const Real* const plastic = chunk.scratch.yield.plastic.data();
+         const Real* const sheared = chunk.scratch.yield.sheared.data();
+         // A sum of two arrays: what the compiler makes of it is enough.
+         const Real* const gained = in_flight ? plastic : sheared;
+         for (std::size_t i = 0; i < chunk.particles.count; ++i) q[i] += gained[i];
+       }});
+}
+
+template void Hardening::add_before_return(Assembly<float>&, std::size_t) const;
+template void Hardening::add_before_return(Assembly<double>&, std::size_t) const;
+template void Hardening::add_after_return(Assembly<float>&, std::size_t) const;
+template void Hardening::add_after_return(Assembly<double>&, std::size_t) const;
+
+}  // namespace repose

@@ -1,0 +1,93 @@
+#include "engine/effect/moisture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace repose {
+
+void Moisture::declare(Fields& fields) {
+  fields.list("wetting", false, "regions that wet sand which has \"moisture\", or dry it", [this](Fields& f) {
+    Source source;
+    bool present = false;
+    f.text("name", source.name, "what messages call it", true);
+    f.object("shape", present, true, "where", [&](Fields& shape) { describe(shape, source.shape); });
+    f.number("rate", source.rate, {.unit = "1/s", .meaning = "change of saturation; negative dries"});
+    f.number("start", source.start, {.unit = "s", .meaning = "time of the first drop", .low = 0.0});
+    f.number("end", source.end, {.unit = "s", .meaning = "time of the last; without it, never", .low = 0.0});
+    f.check(source.end > source.start, "end", "must come after \"start\"");
+    sources.push_back(source);
+  });
+}
+
+void Moisture::declare_in_sand(Fields& fields, const std::string& material) {
+  const auto describe = [](Fields& f, MoistureParameters& p) {
+    f.number("initial", p.initial, {.meaning = "saturation at the start", .low = 0.0, .high = 1.0});
+    f.number("cohesion_change", p.cohesion_change,
+             {.unit = "Pa",
+              .meaning = "what full saturation adds to the cohesion, linearly below; negative weakens, and no "
+                         "cohesion falls under zero"});
+  };
+  declare_entry(fields, kName, "a saturation per particle that changes its cohesion", material, describe);
+}
+
+Result<void> Moisture::prepare(const Surroundings& surroundings) {
+  for (Source& source : sources) {
+    auto shape = surroundings.shape(source.shape, "wetting." + source.name + ".shape");
+    if (!shape) return shape.error();
+    source.solid = *shape;
+  }
+  return {};
+}
+
+std::vector<Channel> Moisture::channels(const SetDescription& set) const {
+  const MoistureParameters* p = find(set);
+  return p == nullptr ? std::vector<Channel>{} : std::vector<Channel>{{kSaturation, p->initial}};
+}
+
+namespace {
+
+/// w changes in particles that lie within a source now. Blocks out of its reach are passed over by one
+/// distance.
+template <class Real>
+void wet(const Moisture::Source& source, Chunk<Real>& chunk, Real* w) {
+  if (chunk.time < source.start || chunk.time >= source.end) return;
+  const double radius = 0.5 * std::sqrt(3.0) * kArenaSide * chunk.spacing;
+  if (source.solid->signed_distance(chunk.world({2.0, 2.0, 2.0})) > radius) return;
+  const Real change = static_cast<Real>(source.rate * static_cast<double>(chunk.dt));
+  for (std::size_t i = 0; i < chunk.particles.count; ++i) {
+    const Real* const* x = chunk.particles.position;
+    if (source.solid->signed_distance(chunk.world({double(x[0][i]), double(x[1][i]), double(x[2][i])})) > 0.0)
+      continue;
+    w[i] = std::clamp(w[i] + change, Real(0), Real(1));
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void Moisture::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
+  const MoistureParameters* p = find(assembly.sets[set]);
+  if (p == nullptr) return;
+  const std::size_t channel = assembly.state.sets[set].extra_index(kSaturation);
+  const auto change = static_cast<Real>(assembly.sets[set].sand().cohesion_strain(p->cohesion_change));
+  if (!sources.empty()) {
+    assembly.plan.gather[set].push_back({{"wetting", "wetting", {"position", kSaturation}, {kSaturation}},
+                                         [sources = sources, channel](Chunk<Real>& chunk) {
+                                           Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
+                                           for (const Source& source : sources) wet(source, chunk, w);
+                                         }});
+  }
+  assembly.plan.gather[set].push_back(
+      {{"moisture", why(), {kSaturation, "cohesion"}, {"cohesion"}}, [channel, change](Chunk<Real>& chunk) {
+         const Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
+         Real* const cohesion = chunk.scratch.yield.cohesion.data();
+         for (std::size_t i = 0; i < chunk.particles.count; ++i) {
+           cohesion[i] = std::max(cohesion[i] + change * w[i], Real(0));
+         }
+       }});
+}
+
+template void Moisture::add_before_return(Assembly<float>&, std::size_t) const;
+template void Moisture::add_before_return(Assembly<double>&, std::size_t) const;
+
+}  // namespace repose

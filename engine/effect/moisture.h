@@ -1,0 +1,42 @@
+// Repose: moisture. Each particle has a saturation w in [0, 1], which changes its cohesion linearly (Tampubolon
+// et al. 2017, section 4.4, let it fall with w; a little water raises it). Regions of the scene wet or dry what
+// lies in them.
+#pragma once
+
+#include <memory>
+
+#include "engine/effect/effect.h"
+
+namespace repose {
+
+struct MoistureParameters {
+  double initial = 0.0;          ///< w at the start
+  double cohesion_change = 0.0;  ///< Pa, added to the cohesion at w = 1, in proportion below
+};
+
+struct Moisture : SandEffect<MoistureParameters> {
+  static constexpr const char* kName = "moisture";
+  /// The channel: w.
+  static constexpr const char* kSaturation = "saturation";
+
+  /// A region that wets, or dries where the rate is negative.
+  struct Source {
+    std::string name;
+    ShapeDescription shape;
+    double rate = 1.0;                                                  ///< change of w, 1/s
+    double start = 0.0, end = std::numeric_limits<double>::infinity();  ///< s
+    std::shared_ptr<const Shape> solid;
+  };
+  std::vector<Source> sources;
+
+  void declare(Fields& fields);
+  void declare_in_sand(Fields& fields, const std::string& material);
+  std::string why() const { return why_by(kName); }
+  Result<void> prepare(const Surroundings& surroundings);
+  std::vector<Channel> channels(const SetDescription& set) const;
+
+  template <class Real>
+  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
+};
+
+}  // namespace repose

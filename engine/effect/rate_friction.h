@@ -1,0 +1,28 @@
+// Repose: friction that rises with the rate of shear, the mu(I) rheology of dense flow (Jop, Forterre and
+// Pouliquen 2006): mu = mu_s + (mu_2 - mu_s) / (1 + I0/I), I = |shear rate| d / sqrt(p/rho_s). In simple shear
+// the cone's mu is 3 alpha / sqrt(2), so mu_s is what friction_angle, hardening or variation have made of the
+// cone.
+#pragma once
+
+#include "engine/effect/effect.h"
+
+namespace repose {
+
+struct RateFrictionParameters {
+  double rise = 0.26;             ///< mu_2 - mu_s
+  double threshold = 0.279;       ///< I0, at which half of the rise is reached
+  double grain_diameter = 1e-3;   ///< d, m
+  double grain_density = 2500.0;  ///< rho_s, kg/m^3
+};
+
+struct RateFriction : SandEffect<RateFrictionParameters> {
+  static constexpr const char* kName = "rate_friction";
+
+  void declare_in_sand(Fields& fields, const std::string& material);
+  std::string why() const { return why_by(kName); }
+
+  template <class Real>
+  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
+};
+
+}  // namespace repose
