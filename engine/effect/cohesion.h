@@ -1,6 +1,7 @@
 // Repose: cohesion, the shear strength that sand has without pressure: damp or cemented sand stands in walls
-// (Tampubolon et al. 2017, eq. 6). Its cone is moved so that the apex is that of Mohr-Coulomb, c cot(phi); a
-// tension cut-off takes away what of that apex is tension.
+// (Tampubolon et al. 2017, eq. 6). Its cone is moved so that the apex is that of Mohr-Coulomb, c cot(phi). A
+// cut-off bounds the largest principal stress (Rankine): with a bound on the mean alone, earth without tension
+// would still carry some along a wall, as long as it is pressed downwards.
 #pragma once
 
 #include "engine/effect/effect.h"
@@ -9,8 +10,8 @@ namespace repose {
 
 struct CohesionParameters {
   double strength = 1000.0;  ///< c, Pa
-  bool cut_off = false;      ///< whether `tension` bounds the mean tension
-  double tension = 0.0;      ///< largest mean tension, Pa
+  bool cut_off = false;      ///< whether `tension` bounds the principal stresses
+  double tension = 0.0;      ///< largest principal stress, Pa
 };
 
 struct Cohesion : SandEffect<CohesionParameters> {
@@ -21,6 +22,8 @@ struct Cohesion : SandEffect<CohesionParameters> {
 
   template <class Real>
   void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
+  template <class Real>
+  void add_after_return(Assembly<Real>& assembly, std::size_t set) const;
 };
 
 }  // namespace repose

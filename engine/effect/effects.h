@@ -22,7 +22,7 @@ using Effects = std::tuple<Gravity,           // v += dt g
                            Prestress,         // bodies begin under their weight
                            VolumeCorrection,  // around the return map, and around all that follows here
                            Hardening,         // cone <- that of the shear so far
-                           Cohesion,          // cohesion, tension
+                           Cohesion,          // cohesion, and tension after the return
                            Moisture,          // cohesion +
                            Variation,         // cone *, cohesion *
                            Dilatancy,         // dilatancy, and what it opens

@@ -29,7 +29,7 @@ struct Scratch {
   AlignedArray<Real> value{kChunk};
   /// Where sand yields by numbers of its own: they, and what yielding did (YieldInput).
   struct {
-    AlignedArray<Real> cone{kChunk}, cohesion{kChunk}, tension{kChunk}, dilatancy{kChunk};
+    AlignedArray<Real> cone{kChunk}, cohesion{kChunk}, dilatancy{kChunk};
     AlignedArray<Real> plastic{kChunk}, sheared{kChunk}, dilated{kChunk};
   } yield;
 };

@@ -232,7 +232,7 @@ std::size_t Stepper<Real>::bytes() const {
 template <class Real>
 std::size_t Stepper<Real>::scratch_bytes() const {
   const std::size_t per_thread =
-      sizeof(Real) * (3 * kArenaValues + kChunk * (kStrainComponents + 6 + kAffineComponents + 8));
+      sizeof(Real) * (3 * kArenaValues + kChunk * (kStrainComponents + 6 + kAffineComponents + 7));
   return order_.scratch_bytes() + scratch_.size() * per_thread;
 }
 

@@ -1,7 +1,6 @@
 #include "engine/step/transfer_stages.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace repose {
 namespace {
@@ -139,13 +138,12 @@ ParticlePass<Real> project_pass(const MaterialRuntime<Real>& material) {
 
 template <class Real>
 ParticlePass<Real> yield_surface_pass(const MaterialRuntime<Real>& material) {
-  return {{"yield surface", "", {}, {"cone", "cohesion", "tension", "dilatancy"}},
+  return {{"yield surface", "", {}, {"cone", "cohesion", "dilatancy"}},
           [cone = material.cone](Chunk<Real>& chunk) {
             auto& yield = chunk.scratch.yield;
             const std::size_t count = chunk.particles.count;
             std::fill_n(yield.cone.data(), count, cone);
             std::fill_n(yield.cohesion.data(), count, Real(0));
-            std::fill_n(yield.tension.data(), count, std::numeric_limits<Real>::max());
             std::fill_n(yield.dilatancy.data(), count, Real(0));
           }};
 }
@@ -154,13 +152,12 @@ template <class Real>
 ParticlePass<Real> project_shaped_pass(const MaterialRuntime<Real>& material) {
   return {{"return map, shaped",
            "",
-           {"trial strain", "cone", "cohesion", "tension", "dilatancy"},
+           {"trial strain", "cone", "cohesion", "dilatancy"},
            {"strain", "plastic strain", "dilated"}},
           [material](Chunk<Real>& chunk) {
             auto& yield = chunk.scratch.yield;
-            const YieldInput<Real> surface{yield.cone.data(),      yield.cohesion.data(), yield.tension.data(),
-                                           yield.dilatancy.data(), yield.plastic.data(),  yield.sheared.data(),
-                                           yield.dilated.data()};
+            const YieldInput<Real> surface{yield.cone.data(),    yield.cohesion.data(), yield.dilatancy.data(),
+                                           yield.plastic.data(), yield.sheared.data(),  yield.dilated.data()};
             material.kernels.project_shaped(material_input(material, chunk), surface);
           }};
 }

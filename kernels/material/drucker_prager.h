@@ -9,11 +9,11 @@
 //     III else      H = eps - dg e/n       back to the cone at the same pressure
 //
 // Sand of a scene that asks for cohesion, dilatancy, hardening and the like yields by numbers per particle:
-//   yield      |dev tau| <= c_C - alpha tr(tau),  that is  n <= k - bc t,  k = c_C / (2 mu);  and t <= t_max
+//   yield      |dev tau| <= c_C - alpha tr(tau),  that is  n <= k - bc t,  k = c_C / (2 mu)
 //   flow       e/n + bD I                                               (bD = 0 above, bD = alpha associated)
 //   return     dg = (n + bc t - k) / (1 + 3 bD bc) in [0, n],  H = eps - dg (e/n + bD I)
-//              and if that leaves t > t_m = min(t_max, k/bc):  t_m, with |dev H| = min(n, k - bc t_m)
-// With k = 0 and bD = 0 these are the three cases: t_m = 0, and at it nothing is left of the deviator.
+//              and if that leaves t > k/bc, the apex:  H = k/(3 bc) I
+// With k = 0 and bD = 0 these are the three cases.
 //
 // Case II comes first: with alpha = 0, e = 0 and t > 0 the paper's order would keep a tensile state.
 // The projection reads only t and n, so it acts on the strain tensor itself and needs no eigenvectors.
@@ -171,8 +171,7 @@ struct DruckerPrager {
     N dilated;  ///< 3 bD dg
   };
   template <class N>
-  REPOSE_INLINE static Shaped<N> project_shaped(const Sym3<N>& eps, N cone, N cohesion, N tension,
-                                                N dilatancy) {
+  REPOSE_INLINE static Shaped<N> project_shaped(const Sym3<N>& eps, N cone, N cohesion, N dilatancy) {
     using T = Scalar<N>;
     const N zero(T(0)), one(T(1)), third(T(1) / 3), tiny(std::numeric_limits<T>::min());
     const N t = trace(eps);
@@ -181,13 +180,13 @@ struct DruckerPrager {
     const N opening = N(T(3)) * dilatancy;
     const N dg = min(max(fma(cone, t, n - cohesion) / fma(opening, cone, one), zero), n);
     const N sheared = fnma(opening, dg, t);
-    const N most = min(tension, cohesion / max(cone, tiny));
-    const auto opened = sheared > most;
-    const N kept_norm = select(opened, min(n, max(fnma(cone, most, cohesion), zero)), n - dg);
+    const N apex = cohesion / max(cone, tiny);
+    const auto opened = sheared > apex;
+    const N kept_norm = select(opened, zero, n - dg);
     const N kept = select(n > tiny, kept_norm / max(n, tiny), one);
-    const N left = select(opened, most, sheared);
+    const N left = select(opened, apex, sheared);
     // Inside the cone nothing may change, not even by rounding.
-    const auto inside = (dg <= zero) & (t <= most);
+    const auto inside = (dg <= zero) & (t <= apex);
     const N lost = n - kept_norm, change = (t - left) * third;
     const N plastic = sqrt(fma(lost, lost, N(T(3)) * change * change));
     const N yielded = select(inside, zero, plastic);

@@ -63,9 +63,8 @@ void project_shaped(const MaterialInput<T>& in, const YieldInput<T>& surface) {
   for (const auto [first, lanes] : packs<T>(in.count)) {
     const auto number = [first = first, lanes = lanes](const T* from)
                             HWY_ATTR { return P::load_first(from + first, lanes); };
-    const auto done =
-        Material::project_shaped(load_sym3<T>(in.strain, first, lanes), number(surface.cone),
-                                 number(surface.cohesion), number(surface.tension), number(surface.dilatancy));
+    const auto done = Material::project_shaped(load_sym3<T>(in.strain, first, lanes), number(surface.cone),
+                                               number(surface.cohesion), number(surface.dilatancy));
     store_sym3(done.strain, in.strain, first, lanes);
     done.plastic.store_first(surface.plastic + first, lanes);
     done.sheared.store_first(surface.sheared + first, lanes);

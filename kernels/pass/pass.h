@@ -89,13 +89,11 @@ struct MaterialInput {
   std::ptrdiff_t ahead = 0;  ///< as in ParticleSpan
 };
 
-/// The yield surface of each particle of a span, |dev eps| <= cohesion - cone tr(eps) with tr(eps) <= tension,
-/// and what yielding did.
+/// The yield surface of each particle of a span, |dev eps| <= cohesion - cone tr(eps), and what yielding did.
 template <class Real>
 struct YieldInput {
   const Real* cone;       ///< bc = alpha (3 lambda + 2 mu) / (2 mu)
   const Real* cohesion;   ///< k = c_C / (2 mu), c_C the norm of the deviator that holds at no pressure
-  const Real* tension;    ///< largest trace that is kept; the apex of the cone bounds it too
   const Real* dilatancy;  ///< bD: the flow e/|e| + bD I opens the sand by 3 bD per unit of shear
   Real* plastic;          ///< out: |trial - returned|
   Real* sheared;          ///< out: the same, but 0 where the sand has opened
@@ -179,6 +177,10 @@ struct Kernels {
   /// plastic shear.
   void (*quicken)(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
                   Real* cone, std::size_t count);
+  /// strain <- its image where no principal stress exceeds `limit` (Pa): Rankine's tension cut-off, by flow
+  /// along the principal directions that exceed it.
+  void (*cut_tension)(Real* const strain[6], const HenckyConstants<Real>& elastic, Real limit,
+                      std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
 
   /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 +

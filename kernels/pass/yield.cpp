@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
+#include "kernels/base/eigen_sym3.h"
 #include "kernels/base/elementary.h"
 #include "kernels/base/small_matrix.h"
 #include "kernels/pass/tables.h"
@@ -74,10 +75,42 @@ void quicken(const T* const strain[6], const T* cohesion, const RateConstants<T>
   }
 }
 
+/// With m the bound of the principal strains, eps_i' = min(eps_i, m) and the largest principal stress is
+/// 2 mu m + lambda sum min(eps_i, m) = limit. That sum is the least of those in which the one, two or three
+/// largest are replaced by m, so the root is the largest of theirs.
+template <class T>
+void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit, std::size_t count) {
+  using P = Pack<T>;
+  const T lambda = elastic.lambda, twice_mu = elastic.mu + elastic.mu;
+  const P allowed(limit), apex(limit / (T(3) * lambda + twice_mu));
+  for (const auto [first, lanes] : packs<T>(count)) {
+    const auto entry = [first = first, lanes = lanes, strain](int k)
+                           HWY_ATTR { return P::load_first(strain[k] + first, lanes); };
+    const Sym3<P> eps{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+    const P t = trace(eps);
+    // No principal strain exceeds the norm: most packs need no eigenvalues.
+    if (!any(fma(P(twice_mu), sqrt(square_norm(eps)), P(lambda) * t) > allowed)) continue;
+    Eigen3<P> eigen = eigen_sym3(eps);
+    const P high = max(max(eigen.value[0], eigen.value[1]), eigen.value[2]);
+    const P low = min(min(eigen.value[0], eigen.value[1]), eigen.value[2]);
+    const P one = fnma(P(lambda), t - high, allowed) / P(lambda + twice_mu);
+    const P two = fnma(P(lambda), low, allowed) / P(lambda + lambda + twice_mu);
+    const P most = max(max(one, two), apex);
+    const auto exceeds = high > most;
+    HWY_UNROLL(3)
+    for (P& value : eigen.value) value = min(value, most);
+    const Sym3<P> cut = select(exceeds, compose(eigen), eps);
+    const P* const entries[] = {&cut.xx, &cut.xy, &cut.xz, &cut.yy, &cut.yz, &cut.zz};
+    HWY_UNROLL(6)
+    for (int k = 0; k < 6; ++k) entries[k]->store_first(strain[k] + first, lanes);
+  }
+}
+
 template <class T>
 void fill_precision(Kernels<T>& table) {
   table.harden = harden<T>;
   table.quicken = quicken<T>;
+  table.cut_tension = cut_tension<T>;
 }
 
 void fill(KernelTables& tables) {

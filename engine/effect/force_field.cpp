@@ -1,0 +1,117 @@
+#include "engine/effect/force_field.h"
+
+#include <cmath>
+
+namespace repose {
+namespace {
+
+void describe(Fields& fields, ForceField& field) {
+  fields.text("name", field.name, "what messages and overrides call it; no two fields share a name", true);
+  const auto drag = [&field](Fields& f) {
+    f.number("drag", field.drag,
+             {.unit = "1/s", .meaning = "rate at which matter takes on the velocity of the air", .low = 0.0});
+  };
+  const Alternative types[] = {
+      {"uniform", "one acceleration",
+       [&](Fields& f) {
+         f.vector("acceleration", field.acceleration, {.unit = "m/s^2", .meaning = "everywhere"});
+       }},
+      {"wind", "air that moves with one velocity",
+       [&](Fields& f) {
+         f.vector("velocity", field.velocity, {.unit = "m/s", .meaning = "of the air"});
+         drag(f);
+       }},
+      {"vortex", "air that turns about an axis", [&](Fields& f) {
+         f.vector("center", field.center, {.unit = "m", .meaning = "a point of the axis"});
+         f.vector("axis", field.axis, {.meaning = "direction of the axis"});
+         f.number("angular_velocity", field.angular_velocity,
+                  {.unit = "rad/s", .meaning = "of the air at the axis"});
+         f.number("radius", field.radius,
+                  {.unit = "m", .meaning = "beyond it the air turns as 1/r^2", .low = 0.0, .low_open = true});
+         f.check(field.axis.norm() > 0.0, "axis", "must not be zero");
+         drag(f);
+       }}};
+  int chosen = static_cast<int>(field.type);
+  fields.alternatives(chosen, types, "what it does");
+  field.type = static_cast<ForceField::Type>(chosen);
+  fields.object("shape", field.bounded, false, "the region; without it, everywhere",
+                [&](Fields& f) { describe(f, field.shape); });
+  fields.number("start", field.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
+  fields.number("end", field.end, {.unit = "s", .meaning = "when it ends; without it, never", .low = 0.0});
+  fields.check(field.end > field.start, "end", "must come after \"start\"");
+}
+
+/// Whether a block of nodes may hold some of the region.
+template <class Real>
+bool reaches(const ForceField& field, const State<Real>& state, const Index3& block) {
+  if (field.region == nullptr) return true;
+  const double radius = 1.5 * std::sqrt(3.0) * state.spacing;
+  return field.region->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <= radius;
+}
+
+template <class Real>
+void act_on_block(const ForceField& field, NodeBlock<Real>& nodes) {
+  if (nodes.time < field.start || nodes.time >= field.end) return;
+  const State<Real>& state = nodes.state;
+  const Index3& block = state.grid.blocks()[nodes.block];
+  if (!reaches(field, state, block)) return;
+  const int flat = state.topology.flat_axis;
+  for (int node = 0; node < kBlockNodes; ++node) {
+    Real* const at = nodes.nodes + node * kNodeValues;
+    if (!(at[0] > Real(0))) continue;
+    Vec3 x = state.world(block, {double(node / 16), double(node / 4 % 4), double(node % 4)});
+    if (flat >= 0) x[flat] = 0.0;
+    if (field.region != nullptr && field.region->signed_distance(x) > 0.0) continue;
+    Vec3 v = field.act(x, Vec3(double(at[1]), double(at[2]), double(at[3])), double(nodes.dt));
+    if (flat >= 0) v[flat] = 0.0;
+    for (int axis = 0; axis < 3; ++axis) at[1 + axis] = static_cast<Real>(v[axis]);
+  }
+}
+
+}  // namespace
+
+Vec3 ForceField::air(const Vec3& x) const {
+  if (type == Type::kWind) return velocity;
+  const Vec3 along = axis.normalized();
+  const Vec3 out = (x - center) - along * along.dot(x - center);
+  const double far = std::max(1.0, out.squaredNorm() / (radius * radius));
+  return angular_velocity / far * along.cross(out);
+}
+
+Vec3 ForceField::act(const Vec3& x, const Vec3& v, double dt) const {
+  if (type == Type::kUniform) return v + dt * acceleration;
+  // dv/dt = drag (u - v) over the step.
+  return v - std::expm1(-drag * dt) * (air(x) - v);
+}
+
+void ForceFields::declare(Fields& fields) {
+  fields.list("force_fields", false, "accelerations and winds beside gravity", [this](Fields& f) {
+    ForceField field;
+    describe(f, field);
+    list.push_back(field);
+  });
+}
+
+Result<void> ForceFields::prepare(const Surroundings& surroundings) {
+  for (ForceField& field : list) {
+    if (!field.bounded) continue;
+    auto shape = surroundings.shape(field.shape, "force_fields." + field.name + ".shape");
+    if (!shape) return shape.error();
+    field.region = *shape;
+  }
+  return {};
+}
+
+template <class Real>
+void ForceFields::add_to_nodes(Assembly<Real>& assembly) const {
+  for (const ForceField& field : list) {
+    assembly.plan.nodes.push_back(
+        {{"force field " + field.name, "force_fields." + field.name, {"node velocity"}, {"node velocity"}},
+         [field](NodeBlock<Real>& block) { act_on_block(field, block); }});
+  }
+}
+
+template void ForceFields::add_to_nodes(Assembly<float>&) const;
+template void ForceFields::add_to_nodes(Assembly<double>&) const;
+
+}  // namespace repose

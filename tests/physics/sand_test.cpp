@@ -1,0 +1,258 @@
+// Repose tests: what effects make of sand, on one element: each law by itself, and where two meet.
+#include <numbers>
+
+#include "tests/physics/element_probe.h"
+
+namespace repose {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// mu = tau / sigma_n of simple shear, and the friction angle of that cone in triaxial compression, degrees.
+double friction_of(const Element& element) {
+  return std::abs(element.stress(1)) / -element.stress(3);
+}
+
+/// phi of Klar et al. 2016, eq. 29, degrees.
+double hardened_angle(double q, double h0, double h1, double h2, double h3) {
+  return h0 + (h1 * q - h3) * std::exp(-h2 * q);
+}
+
+/// eq. 31.
+double triaxial_slope(double degrees) {
+  const double sine = std::sin(degrees / kDegrees);
+  return std::sqrt(2.0 / 3.0) * 2.0 * sine / (3.0 - sine);
+}
+
+/// Shears at constant volume until the plastic shear reaches `most`; the largest relative error of mu against
+/// 3 alpha(q) / sqrt 2 once the sand yields.
+double largest_error(Element& element, double most, double& peak_angle, double& peak_shear) {
+  double error = 0.0;
+  peak_angle = 0.0;
+  for (int step = 0; element.channel("plastic_shear") < most && step < 200000; ++step) {
+    element.shear(1.0, 1e-4);
+    const double q = element.channel("plastic_shear");
+    if (step % 100 != 99 || q < 0.01) continue;
+    const double angle = hardened_angle(q, 35, 9, 0.2, 10);
+    error =
+        std::max(error, std::abs(friction_of(element) / (3.0 / std::sqrt(2.0) * triaxial_slope(angle)) - 1.0));
+    // The angle whose cone has this friction in simple shear.
+    const double slope = std::sqrt(2.0) / 3.0 * friction_of(element);
+    const double sine = 3.0 * slope / (2.0 * std::sqrt(2.0 / 3.0) + slope);
+    if (std::asin(sine) * kDegrees > peak_angle) {
+      peak_angle = std::asin(sine) * kDegrees;
+      peak_shear = q;
+    }
+  }
+  return error;
+}
+
+TEST(Hardening, ConstantVolumeShear_FollowsTheAngleOfItsShear) {
+  Element element(R"("hardening": {"h0": 35, "h1": 9, "h2": 0.2, "h3": 10})");
+  element.compress(1e-3);  // small, so that normal stresses differ little
+  double angle = 0.0, shear = 0.0;
+  const double error = largest_error(element, 7.0, angle, shear);
+  report("largest_error", error);
+  report("peak_angle", angle, "degrees");
+  report("peak_shear", shear);
+  EXPECT_LE(error, 0.01);
+  EXPECT_NEAR(angle, 48.2559, 0.01 * 48.2559);
+  EXPECT_NEAR(shear, 6.1111, 0.3);  // the peak is flat
+}
+
+TEST(Hardening, OtherLaw_IsTold) {
+  Element element(R"("hardening": {"h0": 35, "h1": 6, "h2": 0.2, "h3": 10})");
+  element.compress(3e-3);
+  double angle = 0.0, shear = 0.0;
+  EXPECT_GT(largest_error(element, 3.0, angle, shear), 0.05);
+}
+
+TEST(Hardening, Start_IsH0LessH3) {
+  Element element(R"("hardening": {})");
+  element.compress(3e-3);
+  for (int step = 0; step < 1000; ++step) element.shear(1.0, 1e-5);
+  EXPECT_NEAR(friction_of(element), 3.0 / std::sqrt(2.0) * triaxial_slope(25.0), 0.01);
+}
+
+TEST(Hardening, Flight_HardensOnlyIfItMay) {
+  for (const bool in_flight : {true, false}) {
+    Element element(std::string(R"("hardening": {"in_flight": )") + (in_flight ? "true}" : "false}"));
+    element.step({1, 0, 0, 0, 0, 0, 0, 0, 0}, 0.01);
+    EXPECT_NEAR(element.channel("plastic_shear"), in_flight ? std::log(1.01) : 0.0, 1e-12);
+  }
+}
+
+TEST(Cohesion, ShearWithoutPressure_HoldsItsStrength) {
+  Element element(R"("friction_angle": 30, "cohesion": {"strength": 2000})");
+  for (int step = 0; step < 4000; ++step) element.shear(1.0, 1e-5);
+  const double phi = 30.0 / kDegrees;
+  const double strength = std::sqrt(2.0 / 3.0) * 6.0 * 2000.0 * std::cos(phi) / (3.0 - std::sin(phi));
+  // The elastic part of simple shear has a little pressure: less than a thousandth of the strength.
+  EXPECT_NEAR(element.deviator() / strength, 1.0, 2e-3);
+}
+
+TEST(Cohesion, PlaneStrain_HasCoulombsCone) {
+  Element element(R"("friction_angle": 30, "cone_matching": "plane_strain", "cohesion": {"strength": 2000})");
+  element.compress(5e-3);
+  for (int step = 0; step < 4000; ++step) element.shear(1.0, 1e-5);
+  const double phi = 30.0 / kDegrees;
+  // |tau| = c cos(phi) + p sin(phi) on the plane of largest shear.
+  EXPECT_NEAR(element.deviator() / std::sqrt(2.0), 2000.0 * std::cos(phi) + element.pressure() * std::sin(phi),
+              2.0);
+}
+
+TEST(Cohesion, TensionOnAllSides_EndsAtTheApexOrAtTheCut) {
+  for (const double cut : {-1.0, 500.0, 0.0}) {
+    const std::string limit = cut < 0.0 ? "" : ", \"tension\": {\"limit\": " + std::to_string(cut) + "}";
+    Element element(R"("friction_angle": 30, "cohesion": {"strength": 1000)" + limit + "}");
+    for (int step = 0; step < 1000; ++step) element.step({1, 0, 0, 0, 1, 0, 0, 0, 1}, 1e-5);
+    const double apex = 1000.0 / std::tan(30.0 / kDegrees);
+    EXPECT_NEAR(-element.pressure(), cut < 0.0 ? apex : cut, 1e-6 * apex) << cut;
+  }
+}
+
+/// Pulled along one axis and pressed along another: the pull ends at its limit, the pressure goes on.
+TEST(Cohesion, TensionAlongOneAxis_EndsAtTheCut) {
+  Element element(R"("friction_angle": 30, "cohesion": {"strength": 20000, "tension": {"limit": 300}})");
+  for (int step = 0; step < 1000; ++step) element.step({1, 0, 0, 0, -0.5, 0, 0, 0, 0}, 1e-6);
+  EXPECT_NEAR(element.stress(0), 300.0, 1e-6);
+  EXPECT_LT(element.stress(3), -50.0);
+  const double before = element.stress(3);
+  for (int step = 0; step < 1000; ++step) element.step({1, 0, 0, 0, 0, 0, 0, 0, 0}, 1e-6);
+  EXPECT_NEAR(element.stress(0), 300.0, 1e-6);
+  EXPECT_NEAR(element.stress(3), before, 1e-3 * std::abs(before)) << "flow along x strains nothing across it";
+}
+
+TEST(Cohesion, NoFriction_IsVonMises) {
+  Element element(R"("friction_angle": 0, "cohesion": {"strength": 1500})");
+  element.compress(5e-3);
+  for (int step = 0; step < 4000; ++step) element.shear(1.0, 1e-5);
+  // phi -> 0 in triaxial compression: c_C = 2 sqrt(2/3) c.
+  EXPECT_NEAR(element.deviator(), 2.0 * std::sqrt(2.0 / 3.0) * 1500.0, 0.5);
+}
+
+TEST(Moisture, Cohesion_IsLinearInSaturation) {
+  const double phi = 30.0 / kDegrees;
+  const double per_pascal = std::sqrt(2.0 / 3.0) * 6.0 * std::cos(phi) / (3.0 - std::sin(phi));
+  for (const double w : {0.0, 0.25, 1.0}) {
+    Element element(R"("friction_angle": 30, "cohesion": {"strength": 3000},
+                       "moisture": {"cohesion_change": -2000, "initial": )" +
+                    std::to_string(w) + "}");
+    for (int step = 0; step < 5000; ++step) element.shear(1.0, 1e-5);
+    EXPECT_NEAR(element.deviator() / (per_pascal * (3000.0 - 2000.0 * w)), 1.0, 4e-3) << w;
+  }
+}
+
+TEST(Moisture, MoreThanAllCohesion_LeavesNone) {
+  Element element(R"("cohesion": {"strength": 1000}, "moisture": {"cohesion_change": -2000, "initial": 1})");
+  for (int step = 0; step < 1000; ++step) element.shear(1.0, 1e-5);
+  EXPECT_NEAR(element.deviator(), 0.0, 1e-9);
+}
+
+TEST(Moisture, Wetting_FillsWhatLiesWithinWhileItRuns) {
+  Element element(R"("moisture": {"cohesion_change": 1000})",
+                  R"("wetting": [{"name": "rain", "rate": 0.5, "start": 0.5, "end": 1.5,
+      "shape": {"type": "box", "lower": [-1, -1, -1], "upper": [1, 1, 1]}},
+      {"name": "elsewhere", "rate": 1, "shape": {"type": "box", "lower": [5, 5, 5], "upper": [6, 6, 6]}}])");
+  for (int step = 0; step < 200; ++step) element.shear(0.0, 0.01);
+  EXPECT_NEAR(element.channel("saturation"), 0.5, 0.011);
+}
+
+TEST(Dilatancy, ConstantVolumeShear_PressesByWhatItOpens) {
+  Element element(
+      R"("friction_angle": 30, "cone_matching": "plane_strain", "dilatancy": {"angle": 10, "limit": 1e6})");
+  element.compress(3e-3);
+  for (int step = 0; step < 2000; ++step) element.shear(1.0, 1e-5);
+  const double opened = element.channel("dilation"), trace = element.trace(), elastic = element.strain(1);
+  for (int step = 0; step < 2000; ++step) element.shear(1.0, 1e-5);
+  const double more = element.channel("dilation") - opened;
+  // No volume is made, so the elastic strain gives what the flow takes.
+  EXPECT_NEAR(element.trace() - trace, -more, 1e-9);
+  // In plane strain a cone of psi opens by sin(psi) per plastic shear.
+  const double plastic_shear = 2000 * 1e-5 - 2.0 * (element.strain(1) - elastic);
+  EXPECT_NEAR(more / plastic_shear, std::sin(10.0 / kDegrees), 0.01 * std::sin(10.0 / kDegrees));
+}
+
+TEST(Dilatancy, LongShear_FadesAtItsLimit) {
+  Element element(R"("friction_angle": 30, "dilatancy": {"angle": 10, "limit": 0.02})");
+  element.compress(3e-3);
+  for (int step = 0; step < 60000; ++step) element.shear(1.0, 1e-4);
+  EXPECT_NEAR(element.channel("dilation"), 0.02, 1e-5);
+}
+
+TEST(Dilatancy, WithVolumeCorrection_IsNoGapToBeClosed) {
+  Element element(R"("friction_angle": 30, "dilatancy": {"angle": 10, "limit": 0.02})",
+                  R"("volume_correction": {})");
+  element.compress(3e-3);
+  for (int step = 0; step < 20000; ++step) element.shear(1.0, 1e-5);
+  EXPECT_GT(element.channel("dilation"), 0.01);
+  EXPECT_NEAR(element.channel("volume_gained"), 0.0, 1e-12);
+}
+
+TEST(RateFriction, SteadyShear_IsThatOfItsInertialNumber) {
+  constexpr double kRise = 0.3, kThreshold = 0.28, kDiameter = 0.01, kDensity = 2500.0;
+  for (const double rate : {0.1, 1.0, 10.0}) {
+    Element element(R"("friction_angle": 25, "cone_matching": "plane_strain",
+      "rate_friction": {"rise": 0.3, "threshold": 0.28, "grain_diameter": 0.01, "grain_density": 2500})");
+    element.compress(1e-3);
+    for (int step = 0; step < 5000; ++step) element.shear(rate, 1e-5 / rate);
+    const double inertial = rate * kDiameter / std::sqrt(element.pressure() / kDensity);
+    const double expected = std::sin(25.0 / kDegrees) + kRise / (1.0 + kThreshold / inertial);
+    EXPECT_NEAR(friction_of(element), expected, 1e-3 * expected) << rate;
+  }
+}
+
+/// A step that is longer than the law's own time does not overshoot: the rate is that of the step's end.
+TEST(RateFriction, LongSteps_StayOnTheLaw) {
+  Element element(R"("friction_angle": 25, "cone_matching": "plane_strain",
+    "rate_friction": {"rise": 0.3, "threshold": 0.28, "grain_diameter": 0.01, "grain_density": 2500})");
+  element.compress(1e-2);
+  for (int step = 0; step < 300; ++step) element.shear(10.0, 1e-3);
+  const double inertial = 10.0 * 0.01 / std::sqrt(element.pressure() / 2500.0);
+  const double expected = std::sin(25.0 / kDegrees) + 0.3 / (1.0 + 0.28 / inertial);
+  EXPECT_NEAR(friction_of(element), expected, 0.02 * expected);
+}
+
+TEST(Variation, Noise_IsSmoothBoundedAndCentred) {
+  double sum = 0.0, most = 0.0, jump = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 x(0.37 * i, -0.21 * i, 0.11 * i);
+    const double value = noise(x, 7);
+    sum += value;
+    most = std::max(most, std::abs(value));
+    jump = std::max(jump, std::abs(noise(x + Vec3(1e-6, 1e-6, 1e-6), 7) - value));
+    EXPECT_NE(value, noise(x, 8));
+  }
+  EXPECT_NEAR(sum / 20000, 0.0, 0.02);
+  EXPECT_GT(most, 0.8);
+  EXPECT_LE(most, 1.0);
+  EXPECT_LT(jump, 1e-4);
+}
+
+TEST(Variation, Friction_IsTheParticlesOwn) {
+  Element element(R"("friction_angle": 30, "variation": {"friction": 0.3, "length": 0.1})");
+  element.compress(3e-3);
+  for (int step = 0; step < 2000; ++step) element.shear(1.0, 1e-5);
+  double low = 2.0, high = 0.0;
+  for (std::size_t p = 0; p < element.count(); ++p) {
+    const double factor = element.channel("friction_factor", p);
+    low = std::min(low, factor);
+    high = std::max(high, factor);
+    EXPECT_NEAR(element.deviator(p) / element.pressure(p), 3.0 * triaxial_slope(30.0) * factor, 1e-6);
+  }
+  EXPECT_LT(low, 0.95);
+  EXPECT_GT(high, 1.05);
+}
+
+TEST(Sand, ShapedByNothing_IsThePlainMap) {
+  Element plain(R"("friction_angle": 30)"), shaped(R"("friction_angle": 30, "cohesion": {"strength": 0})");
+  for (Element* element : {&plain, &shaped}) {
+    element->compress(3e-3);
+    for (int step = 0; step < 200; ++step) element->step({0.3, 1, -0.2, 0.1, -0.5, 0.4, 0, 0.2, 0.1}, 1e-4);
+  }
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(shaped.strain(k), plain.strain(k), 1e-15) << k;
+  EXPECT_EQ(plain.channels(), 0u);
+}
+
+}  // namespace
+}  // namespace repose
