@@ -35,9 +35,11 @@ void Cohesion::add_after_return(Assembly<Real>& assembly, std::size_t set) const
   if (p == nullptr || !p->cut_off) return;
   const HenckyConstants<Real> elastic(assembly.sets[set].elasticity());
   assembly.plan.gather[set].push_back(
-      {{"tension cut-off", why() + ".tension", {"strain"}, {"strain"}},
-       [kernel = assembly.plan.kernels->cut_tension, elastic, limit = static_cast<Real>(p->tension)](
-           Chunk<Real>& chunk) { kernel(chunk.particles.strain, elastic, limit, chunk.particles.count); }});
+      {{"tension cut-off", why() + ".tension", {"strain"}, {"strain", "trace of trial"}},
+       [kernel = assembly.plan.kernels->cut_tension, elastic,
+        limit = static_cast<Real>(p->tension)](Chunk<Real>& chunk) {
+         kernel(chunk.particles.strain, elastic, limit, chunk.scratch.value.data(), chunk.particles.count);
+       }});
 }
 
 template void Cohesion::add_before_return(Assembly<float>&, std::size_t) const;

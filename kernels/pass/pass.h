@@ -178,9 +178,10 @@ struct Kernels {
   void (*quicken)(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
                   Real* cone, std::size_t count);
   /// strain <- its image where no principal stress exceeds `limit` (Pa): Rankine's tension cut-off, by flow
-  /// along the principal directions that exceed it.
+  /// along the principal directions that exceed it. A crack is no gap on all sides: by how much it opens is
+  /// taken from `trace_of_trial`, so that close_volume does not count it.
   void (*cut_tension)(Real* const strain[6], const HenckyConstants<Real>& elastic, Real limit,
-                      std::size_t count);
+                      Real* trace_of_trial, std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
 
   /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 +

@@ -79,7 +79,8 @@ void quicken(const T* const strain[6], const T* cohesion, const RateConstants<T>
 /// 2 mu m + lambda sum min(eps_i, m) = limit. That sum is the least of those in which the one, two or three
 /// largest are replaced by m, so the root is the largest of theirs.
 template <class T>
-void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit, std::size_t count) {
+void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit, T* trace_of_trial,
+                 std::size_t count) {
   using P = Pack<T>;
   const T lambda = elastic.lambda, twice_mu = elastic.mu + elastic.mu;
   const P allowed(limit), apex(limit / (T(3) * lambda + twice_mu));
@@ -100,6 +101,8 @@ void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit,
     HWY_UNROLL(3)
     for (P& value : eigen.value) value = min(value, most);
     const Sym3<P> cut = select(exceeds, compose(eigen), eps);
+    (P::load_first(trace_of_trial + first, lanes) - (t - trace(cut)))
+        .store_first(trace_of_trial + first, lanes);
     const P* const entries[] = {&cut.xx, &cut.xy, &cut.xz, &cut.yy, &cut.yz, &cut.zz};
     HWY_UNROLL(6)
     for (int k = 0; k < 6; ++k) entries[k]->store_first(strain[k] + first, lanes);
