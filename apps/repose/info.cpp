@@ -8,6 +8,7 @@
 #include "apps/repose/run_log.h"
 #include "engine/io/checkpoint.h"
 #include "engine/io/point_cloud.h"
+#include "engine/io/surface.h"
 
 namespace repose {
 namespace {
@@ -34,6 +35,35 @@ void print_points(const std::string& path, const PointCloud& points) {
     std::printf(" %s (%.4g to %.4g)", attribute.name.c_str(), *least, *most);
   }
   std::printf("\n");
+}
+
+int print_points_of(const std::string& path, const Result<PointCloud>& points) {
+  if (!points) return fail(points.error());
+  print_points(path, *points);
+  return 0;
+}
+
+void print_grid(const GridFigures& grid) {
+  const auto &voxel = grid.voxel, &lower = grid.lower, &upper = grid.upper;
+  std::printf("  %s (%s): %llu voxels of %g", grid.name.c_str(), grid.type.c_str(),
+              static_cast<unsigned long long>(grid.active), voxel[0]);
+  if (voxel[1] != voxel[0] || voxel[2] != voxel[0]) std::printf(" x %g x %g", voxel[1], voxel[2]);
+  std::printf(" m\n");
+  if (grid.active == 0) return;
+  std::printf("    bounds  (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g) m\n    values  %.4g to %.4g\n", lower[0],
+              lower[1], lower[2], upper[0], upper[1], upper[2], grid.least, grid.most);
+}
+
+/// Points, or the grids of a surface or fog.
+int print_vdb(const std::string& path) {
+  const auto grids = read_grid_figures(path);
+  if (!grids) return fail(grids.error());
+  if (std::any_of(grids->begin(), grids->end(), [](const GridFigures& grid) { return grid.points; })) {
+    return print_points_of(path, read_vdb_points(path));
+  }
+  std::printf("%s: %zu grid%s\n", path.c_str(), grids->size(), grids->size() == 1 ? "" : "s");
+  for (const GridFigures& grid : *grids) print_grid(grid);
+  return 0;
 }
 
 int print_run(const std::string& folder) {
@@ -102,12 +132,8 @@ int print_file(const std::string& path) {
                  "is not what info can read: a .vdb, .ply, .vtp or .checkpoint file, or the folder of a run",
                  path});
   }
-  auto points = extension == ".vdb"   ? read_vdb_points(path)
-                : extension == ".ply" ? read_ply(path)
-                                      : read_vtp(path);
-  if (!points) return fail(points.error());
-  print_points(path, *points);
-  return 0;
+  if (extension == ".vdb") return print_vdb(path);
+  return print_points_of(path, extension == ".ply" ? read_ply(path) : read_vtp(path));
 }
 
 }  // namespace

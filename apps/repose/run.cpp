@@ -8,11 +8,11 @@
 #include <iterator>
 
 #include "apps/repose/command.h"
+#include "apps/repose/frame_files.h"
 #include "apps/repose/output_folder.h"
 #include "apps/repose/progress.h"
 #include "apps/repose/run_log.h"
 #include "engine/io/atomic_file.h"
-#include "engine/io/point_cloud.h"
 #include "engine/scene/identity.h"
 
 namespace repose {
@@ -60,17 +60,16 @@ class Run {
         frames_(frames),
         folder_(std::move(folder)),
         simulation_(std::move(simulation)),
-        log_(scene_, arguments.scene.quality, *simulation_) {}
+        log_(scene_, arguments.scene.quality, *simulation_),
+        files_(scene_, folder_) {}
 
   int go();
 
  private:
   Result<void> resume();
   Error other_scene(Error error) const;
-  void list_series();
   Result<FrameReport> advance(Progress& progress);
   Result<void> write_frame(const FrameReport& frame);
-  Result<void> write_caches(std::int64_t frame);
   Result<void> write_bundle(const Error& error);
   int interrupted();
   int stop(Error error);
@@ -83,9 +82,8 @@ class Run {
   OutputFolder folder_;
   std::unique_ptr<Simulation> simulation_;
   RunLog log_;
+  FrameFiles files_;
   std::size_t warnings_told_ = 0;
-  std::vector<std::string> vtp_;
-  std::vector<double> vtp_times_;
 };
 
 Result<void> Run::resume() {
@@ -94,7 +92,7 @@ Result<void> Run::resume() {
     auto loaded = simulation_->load(path);
     if (loaded) {
       log_.continue_from(folder_.log(), simulation_->counters().frame);
-      list_series();
+      files_.list_series(log_.frames());
       if (!arguments_.json && !arguments_.quiet)
         std::fprintf(stderr, "repose: resuming after frame %lld%s\n", static_cast<long long>(frame),
                      frame < frames_.last ? "" : ", so there is nothing left to do; --frames N goes further");
@@ -116,16 +114,6 @@ Error Run::other_scene(Error error) const {
   error.message =
       "belongs to another scene: " + difference + "; give it back its value, or run without --resume";
   return error;
-}
-
-/// The series names the frames of the whole run, so also those from before it was resumed.
-void Run::list_series() {
-  for (const Json::Value& row : log_.frames()) {
-    const std::string path = folder_.frame("points", row["frame"].asInt64(), "vtp");
-    if (!scene_.output.vtp || !std::filesystem::exists(path)) continue;
-    vtp_.push_back(path);
-    vtp_times_.push_back(row["time"].asDouble());
-  }
 }
 
 Result<FrameReport> Run::advance(Progress& progress) {
@@ -151,30 +139,9 @@ Result<FrameReport> Run::advance(Progress& progress) {
   });
 }
 
-Result<void> Run::write_caches(std::int64_t frame) {
-  const OutputDescription& output = scene_.output;
-  if (!output.vdb && !output.ply && !output.vtp) return {};
-  const PointCloud points = simulation_->points();
-  if (output.vdb) {
-    if (auto written = write_vdb_points(points, folder_.frame("points", frame, "vdb")); !written)
-      return written;
-  }
-  if (output.ply) {
-    if (auto written = write_ply(points, folder_.frame("points", frame, "ply")); !written) return written;
-  }
-  if (output.vtp) {
-    const std::string path = folder_.frame("points", frame, "vtp");
-    if (auto written = write_vtp(points, path); !written) return written;
-    vtp_.push_back(path);
-    vtp_times_.push_back(simulation_->counters().time);
-    return write_vtp_series(vtp_, vtp_times_, folder_.path() + "/" + scene_.name + ".points.vtp.series");
-  }
-  return {};
-}
-
 Result<void> Run::write_frame(const FrameReport& frame) {
   if (frame.frame >= frames_.first) {
-    if (auto written = write_caches(frame.frame); !written) return written;
+    if (auto written = files_.write(*simulation_, frame.frame); !written) return written;
   }
   const Json::Value& row = log_.add(frame, *simulation_);
   tell(frame, row);

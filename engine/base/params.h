@@ -44,6 +44,10 @@ class Fields {
   /// One of several names; `index` is the position in `choices`.
   virtual void choice(const char* key, int& index, std::span<const Choice> choices, const char* meaning) = 0;
 
+  /// Any of several names, each at most once; `chosen` has their positions in `choices`, in the order given.
+  virtual void choices(const char* key, std::vector<int>& chosen, std::span<const Choice> choices,
+                       const char* meaning) = 0;
+
   /// A nested object. `present` tells, and is set to, whether the key is there; a required one must be.
   virtual void object(const char* key, bool& present, bool required, const char* meaning,
                       const std::function<void(Fields&)>& describe) = 0;
@@ -76,6 +80,17 @@ class Fields {
     int index = static_cast<int>(value);
     choice(key, index, choices, meaning);
     value = static_cast<Enum>(index);
+  }
+
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void choices(const char* key, std::vector<Enum>& values, std::span<const Choice> choices,
+               const char* meaning) {
+    std::vector<int> chosen;
+    for (const Enum value : values) chosen.push_back(static_cast<int>(value));
+    this->choices(key, chosen, choices, meaning);
+    values.clear();
+    for (const int index : chosen) values.push_back(static_cast<Enum>(index));
   }
 };
 

@@ -18,14 +18,15 @@ struct PointAttribute {
   std::vector<float> values;
 };
 
-/// One frame's particles. Every array has one entry per particle, in the same order.
+/// One frame's particles. Every array has one entry per particle, in the same order; `mass` may lack.
 struct PointCloud {
   std::vector<std::array<double, 3>> position;  ///< P, metres
   std::vector<std::array<float, 3>> velocity;   ///< v, metres per second
   std::vector<std::uint32_t> id;                ///< unique; survives any re-ordering
   std::vector<float> radius;                    ///< pscale, metres
   std::vector<PointAttribute> attributes;
-  double spacing = 0.0;  ///< dx, metres; the voxel size of the VDB grid
+  std::vector<float> mass;  ///< kg; empty unless asked for, and in no file of points
+  double spacing = 0.0;     ///< dx, metres; the voxel size of the VDB grid
 
   std::size_t size() const { return position.size(); }
 };

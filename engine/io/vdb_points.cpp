@@ -1,22 +1,15 @@
-// Repose: particles as OpenVDB points, the format that Houdini and its kin read. OpenVDB lives in this file
-// alone. It writes through a stream of ours, since openvdb::io::File returns normally from a full disk. It
-// parses only files that carry our checksum, since a flipped bit makes OpenVDB abort, hang or take all memory.
+// Repose: particles as OpenVDB points, the format that Houdini and its kin read. How the file comes to the disk
+// and is trusted again is in vdb_file.h.
 #include <openvdb/io/Stream.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointDataGrid.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <new>
-#include <streambuf>
 #include <utility>
 
-#include "engine/io/atomic_file.h"
 #include "engine/io/point_layout.h"
+#include "engine/io/vdb_file.h"
 
 namespace repose {
 namespace {
@@ -24,73 +17,6 @@ namespace {
 namespace vdb = openvdb;
 using Tree = vdb::points::PointDataTree;
 using Grid = vdb::points::PointDataGrid;
-
-// OpenVDB puts a random UUID at this place of each file. We put there a checksum of all the other bytes in the
-// form of a UUID of version 8 (RFC 9562: vendor's own), OpenVDB's being of version 4: the same particles give
-// the same bytes, and a reader can tell that a file is ours and whole before OpenVDB sees it.
-constexpr std::uint64_t kTagOffset = 21;
-constexpr std::uint64_t kTagBytes = 36;
-
-/// FNV-1a (Fowler, Noll, Vo) over a file whose tag is left out.
-class Checksum {
- public:
-  void add(const char* data, std::size_t bytes) {
-    for (std::size_t i = 0; i < bytes; ++i, ++length_) {
-      if (length_ - kTagOffset < kTagBytes) continue;
-      hash_ = (hash_ ^ static_cast<unsigned char>(data[i])) * 0x100000001b3u;
-    }
-  }
-
-  std::string tag() const {
-    char text[kTagBytes + 1];
-    std::snprintf(text, sizeof text, "%08x-%04x-8%03x-8000-%012llx", static_cast<unsigned>(hash_ >> 32),
-                  static_cast<unsigned>(hash_ >> 16 & 0xffff), static_cast<unsigned>(hash_ & 0xfff),
-                  static_cast<unsigned long long>(length_ & 0xffffffffffff));
-    return text;
-  }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-  std::uint64_t length_ = 0;
-};
-
-/// Carries what OpenVDB writes into an AtomicFile; a short count makes the stream throw inside OpenVDB.
-class FileBuffer : public std::streambuf {
- public:
-  explicit FileBuffer(AtomicFile& file) : file_(file) {}
-  const Checksum& checksum() const { return checksum_; }
-  const Result<void>& state() const { return state_; }
-
- protected:
-  std::streamsize xsputn(const char* data, std::streamsize bytes) override {
-    const auto count = static_cast<std::size_t>(bytes);
-    checksum_.add(data, count);
-    state_ = file_.write(data, count);
-    return state_ ? bytes : 0;
-  }
-
-  int_type overflow(int_type c) override {
-    const char byte = traits_type::to_char_type(c);
-    return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
-  }
-
- private:
-  AtomicFile& file_;
-  Checksum checksum_;
-  Result<void> state_;
-};
-
-/// Runs `work`, which calls OpenVDB, and turns what it throws into an error.
-template <class Work>
-auto without_exceptions(const std::string& path, const char* doing, Work&& work) -> decltype(work()) {
-  try {
-    return work();
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::kMemory, std::string(doing) + ": out of memory", path};
-  } catch (const std::exception& error) {
-    return Error{ErrorKind::kIo, std::string(doing) + ": " + error.what(), path};
-  }
-}
 
 /// The points as OpenVDB wants to see them.
 struct Positions {
@@ -177,44 +103,12 @@ Result<void> check_voxels(const PointCloud& points, const std::string& path) {
   return {};
 }
 
-Result<void> stream_grid(const Grid::Ptr& grid, AtomicFile& file, const std::string& path) {
-  FileBuffer buffer(file);
-  const Result<void> written = without_exceptions(path, "writing failed", [&]() -> Result<void> {
-    std::ostream stream(&buffer);
-    stream.exceptions(std::ios::failbit | std::ios::badbit);
-    vdb::MetaMap meta;
-    meta.insertMeta("creator", vdb::StringMetadata("repose"));
-    vdb::io::Stream archive(stream);
-    archive.setCompression(vdb::io::COMPRESS_ACTIVE_MASK | vdb::io::COMPRESS_BLOSC);
-    archive.write(vdb::GridCPtrVec{grid}, meta);
-    return {};
-  });
-  if (!buffer.state()) return buffer.state();
-  if (!written) return written;
-  return file.overwrite(kTagOffset, buffer.checksum().tag().data(), kTagBytes);
-}
-
-/// Refuses a file that does not carry the checksum of its own bytes.
-Result<void> check_tag(std::ifstream& file, const std::string& path) {
-  std::vector<char> block(1 << 20);
-  std::string tag;
-  Checksum checksum;
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    const auto bytes = static_cast<std::size_t>(file.gcount());
-    if (tag.empty() && bytes >= kTagOffset + kTagBytes) tag.assign(block.data() + kTagOffset, kTagBytes);
-    checksum.add(block.data(), bytes);
-  }
-  if (file.bad()) return Error{ErrorKind::kIo, "reading failed", path};
-  if (tag.size() != kTagBytes || tag[14] != '8') {
-    return Error{ErrorKind::kIo, "is not a file of VDB points that Repose wrote", path};
-  }
-  if (tag != checksum.tag()) {
-    return Error{ErrorKind::kIo, "is cut short or damaged: its checksum does not fit its bytes", path};
-  }
-  file.clear();
-  file.seekg(0);
-  return {};
+void put_grid(const Grid::Ptr& grid, std::ostream& stream) {
+  vdb::MetaMap meta;
+  meta.insertMeta("creator", vdb::StringMetadata("repose"));
+  vdb::io::Stream archive(stream);
+  archive.setCompression(vdb::io::COMPRESS_ACTIVE_MASK | vdb::io::COMPRESS_BLOSC);
+  archive.write(vdb::GridCPtrVec{grid}, meta);
 }
 
 /// The names of the extra attributes in the order in which they were written.
@@ -291,17 +185,17 @@ Result<void> write_vdb_points(const PointCloud& points, const std::string& path)
     return make_grid(points);
   });
   if (!grid) return grid.error();
-  if (Result<void> done = stream_grid(*grid, *file, path); !done) return done;
+  const Result<void> done = stream_vdb(*file, path, [&](std::ostream& stream) { put_grid(*grid, stream); });
+  if (!done) return done;
   return file->commit();
 }
 
 Result<PointCloud> read_vdb_points(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorKind::kNoInput, std::string("cannot be opened: ") + std::strerror(errno), path};
-  if (Result<void> good = check_tag(file, path); !good) return good.error();
+  Result<std::ifstream> file = open_vdb(path);
+  if (!file) return file.error();
   return without_exceptions(path, "reading failed", [&]() -> Result<PointCloud> {
     vdb::initialize();
-    vdb::io::Stream archive(file, /*delayLoad=*/false);
+    vdb::io::Stream archive(*file, /*delayLoad=*/false);
     for (const vdb::GridBase::Ptr& grid : *archive.getGrids()) {
       if (const Grid::Ptr found = vdb::gridPtrCast<Grid>(grid)) return cloud_of(*found);
     }

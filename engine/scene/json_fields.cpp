@@ -219,18 +219,46 @@ void JsonFields::rows(const char* key, std::vector<std::vector<double>>& value, 
   }
 }
 
-void JsonFields::choice(const char* key, int& index, std::span<const Choice> choices, const char*) {
-  Json::Value* found = find(key, false, "");
-  if (found == nullptr) return;
+bool JsonFields::read_name(const Json::Value& value, const std::string& path, std::span<const Choice> choices,
+                           int& index) {
   const std::vector<std::string> names = names_of(choices);
-  const std::string name = found->isString() ? found->asString() : "";
+  const std::string name = value.isString() ? value.asString() : "";
   const auto chosen = std::find(names.begin(), names.end(), name);
-  if (!found->isString()) {
-    mistaken(*found, path_of(key), one_of(names));
+  if (!value.isString()) {
+    mistaken(value, path, one_of(names));
   } else if (chosen == names.end()) {
-    mistaken(*found, path_of(key), one_of(names) + "; " + did_you_mean(name, names));
+    mistaken(value, path, one_of(names) + "; " + did_you_mean(name, names));
   } else {
     index = static_cast<int>(chosen - names.begin());
+    return true;
+  }
+  return false;
+}
+
+void JsonFields::choice(const char* key, int& index, std::span<const Choice> choices, const char*) {
+  const Json::Value* found = find(key, false, "");
+  if (found != nullptr) read_name(*found, path_of(key), choices, index);
+}
+
+void JsonFields::choices(const char* key, std::vector<int>& chosen, std::span<const Choice> choices,
+                         const char*) {
+  const Json::Value* found = find(key, false, "");
+  if (found == nullptr) return;
+  if (!found->isArray()) {
+    mistaken(*found, path_of(key), "a list of names, each " + one_of(names_of(choices)));
+    return;
+  }
+  chosen.clear();
+  for (Json::ArrayIndex i = 0; i < found->size(); ++i) {
+    const Json::Value& value = (*found)[i];
+    const std::string path = element(path_of(key), i);
+    int index = 0;
+    if (!read_name(value, path, choices, index)) continue;
+    if (std::find(chosen.begin(), chosen.end(), index) != chosen.end()) {
+      complain(value, path, found_text(value) + " is there twice; once is enough");
+      continue;
+    }
+    chosen.push_back(index);
   }
 }
 

@@ -39,6 +39,8 @@ class JsonFields final : public Fields {
   void rows(const char* key, std::vector<std::vector<double>>& value, int width,
             const Quantity& quantity) override;
   void choice(const char* key, int& index, std::span<const Choice> choices, const char* meaning) override;
+  void choices(const char* key, std::vector<int>& chosen, std::span<const Choice> choices,
+               const char* meaning) override;
   void object(const char* key, bool& present, bool required, const char* meaning,
               const std::function<void(Fields&)>& describe) override;
   void list(const char* key, bool required, const char* meaning,
@@ -66,6 +68,8 @@ class JsonFields final : public Fields {
                     std::int64_t& number);
   bool read_row(Json::Value& value, const std::string& path, int width, const Quantity& quantity,
                 std::vector<double>& row);
+  bool read_name(const Json::Value& value, const std::string& path, std::span<const Choice> choices,
+                 int& index);
   void read_object(Json::Value& value, const std::string& path, const std::function<void(Fields&)>& describe);
 
   Json::Value& object_;

@@ -72,11 +72,16 @@ class ReferenceFields final : public Fields {
   }
 
   void choice(const char* key, int& index, std::span<const Choice> choices, const char* meaning) override {
-    std::string range;
-    for (const Choice& choice : choices) {
-      range += (range.empty() ? "" : "; ") + code(choice.name) + ": " + choice.meaning;
+    row(key, "", code(choices[static_cast<std::size_t>(index)].name), names_of(choices), meaning);
+  }
+
+  void choices(const char* key, std::vector<int>& chosen, std::span<const Choice> choices,
+               const char* meaning) override {
+    std::string standard;
+    for (const int index : chosen) {
+      standard += (standard.empty() ? "" : ", ") + std::string(choices[static_cast<std::size_t>(index)].name);
     }
-    row(key, "", code(choices[static_cast<std::size_t>(index)].name), range, meaning);
+    row(key, "", "[" + standard + "]", "list of any of " + names_of(choices), meaning);
   }
 
   void object(const char* key, bool&, bool required, const char* meaning,
@@ -122,6 +127,14 @@ class ReferenceFields final : public Fields {
   struct Row {
     std::string key, unit, standard, range, meaning;
   };
+
+  static std::string names_of(std::span<const Choice> choices) {
+    std::string names;
+    for (const Choice& choice : choices) {
+      names += (names.empty() ? "" : "; ") + code(choice.name) + ": " + choice.meaning;
+    }
+    return names;
+  }
 
   template <class List>
   static std::string list_of(const List& list) {

@@ -21,10 +21,18 @@ constexpr Choice kFlatAxes[] = {
 constexpr Choice kSamplings[] = {
     {"jittered", "each cell is cut into equal parts with one particle at random in each"},
     {"poisson_disk", "no two particles closer than a radius, Bridson 2007"}};
+constexpr Choice kAttributes[] = {
+    {"stress", "Cauchy stress, Pa, tension positive; 6 components xx yy zz xy yz xz"},
+    {"pressure", "minus the mean of the stress's diagonal, Pa"},
+    {"elastic_strain", "Hencky strain of the elastic part; 6 components as of stress"},
+    {"density", "kg/m^3, as the elastic strain and the volume that volume_correction remembers leave it"},
+    {"speed", "m/s"},
+    {"channels", "every number per particle that an effect keeps, by its own name"}};
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
-constexpr double kBlockCells = 8.0;   // two blocks: what keeps block colours and a periodic seam in step
-constexpr double kMostCells = 2.0e9;  // cell coordinates are 32 bits wide
+constexpr double kBlockCells = 8.0;          // two blocks: what keeps block colours and a periodic seam in step
+constexpr double kFinestVoxel = 1.0 / 16.0;  // of files, spacings
+constexpr double kMostCells = 2.0e9;         // cell coordinates are 32 bits wide
 
 bool is_multiple(double value, double unit) {
   const double count = value / unit;
@@ -157,10 +165,40 @@ void describe_body(Fields& fields, BodyDescription& body) {
                 {.unit = "rad/s", .meaning = "at the start, about the centre of the shape's bounds"});
 }
 
-void describe_output(Fields& fields, OutputDescription& output) {
+/// The size of voxels; a grid of much finer ones would say no more, and take all memory.
+void describe_voxel(Fields& fields, double& voxel, double spacing, const char* meaning) {
+  fields.number("voxel", voxel, {.unit = "m", .meaning = meaning, .low = 0.0});
+  fields.check(voxel == 0.0 || voxel >= kFinestVoxel * spacing, "voxel",
+               "must be at least a sixteenth of grid.spacing, " + number_text(kFinestVoxel * spacing) + " m");
+}
+
+void describe_surface(Fields& fields, SurfaceDescription& surface, double spacing) {
+  describe_voxel(fields, surface.voxel, spacing,
+                 "edge of a voxel, at most grid.spacing; 0: half of grid.spacing");
+  fields.check(
+      surface.voxel <= spacing, "voxel",
+      "must be at most grid.spacing, " + number_text(spacing) + " m: particles fall through coarser ones");
+  fields.number("radius", surface.radius,
+                {.unit = "spacings",
+                 .meaning = "gaps that a ball of this radius does not fit into are closed",
+                 .low = 0.5,
+                 .high = 4.0});
+  fields.integer(
+      "smoothing", surface.smoothing,
+      {.meaning = "times that the surface is averaged over its neighbours", .low = 0.0, .high = 100.0});
+}
+
+void describe_output(Fields& fields, OutputDescription& output, double spacing) {
   fields.flag("vdb", output.vdb, "points as NAME.points.####.vdb");
   fields.flag("ply", output.ply, "points as PLY");
   fields.flag("vtp", output.vtp, "points as VTK polygonal data");
+  fields.choices("attributes", output.attributes, kAttributes, "what points carry beside P, v, id and pscale");
+  fields.object("surface", output.surface.given, false,
+                "the surface of the material, a level set, as NAME.surface.####.vdb",
+                [&](Fields& f) { describe_surface(f, output.surface, spacing); });
+  fields.object(
+      "fog", output.fog.given, false, "density and velocity of the material on voxels, as NAME.fog.####.vdb",
+      [&](Fields& f) { describe_voxel(f, output.fog.voxel, spacing, "edge of a voxel; 0: grid.spacing"); });
   fields.flag("checkpoint", output.checkpoint, "a state to resume from per frame, the last two kept");
 }
 
@@ -256,7 +294,7 @@ void describe(Fields& fields, Scene& scene) {
       !scene.grid.plane_strain || scene.effect<Gravity>().acceleration[*scene.grid.plane_strain] == 0.0,
       "gravity", "acceleration must be zero along the flat axis (plane_strain)");
   fields.object("output", given, false, "what is written per frame",
-                [&](Fields& f) { describe_output(f, scene.output); });
+                [&](Fields& f) { describe_output(f, scene.output, scene.grid.spacing); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",
                 [&](Fields& f) { describe_camera(f, scene.camera); });
 }

@@ -78,11 +78,32 @@ struct BodyDescription {
   Vec3 angular_velocity{0, 0, 0};  ///< rad/s about the centre of the shape's bounds
 };
 
+/// What points may carry beside position, velocity, id and radius; computed from the state when it is written.
+/// Shapes and units: engine/simulation/points.h.
+enum class OutputAttribute { kStress, kPressure, kElasticStrain, kDensity, kSpeed, kChannels };
+
+/// The surface of the material as a level set.
+struct SurfaceDescription {
+  bool given = false;
+  double voxel = 0.0;          ///< m; 0: half of grid.spacing
+  double radius = 1.0;         ///< spacings; gaps that a ball of this radius does not fit into are closed
+  std::int64_t smoothing = 2;  ///< times that the surface is averaged over its neighbours
+};
+
+/// Density and velocity of the material on voxels.
+struct FogDescription {
+  bool given = false;
+  double voxel = 0.0;  ///< m; 0: grid.spacing
+};
+
 struct OutputDescription {
   bool vdb = true;  ///< NAME.points.####.vdb
   bool ply = false;
   bool vtp = false;
-  bool checkpoint = true;  ///< a resumable state per frame, two kept
+  std::vector<OutputAttribute> attributes;  ///< of points
+  SurfaceDescription surface;               ///< NAME.surface.####.vdb
+  FogDescription fog;                       ///< NAME.fog.####.vdb
+  bool checkpoint = true;                   ///< a resumable state per frame, two kept
 };
 
 /// How `movie` looks at the run.

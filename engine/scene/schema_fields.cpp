@@ -107,6 +107,20 @@ class SchemaFields final : public Fields {
     add(key, schema, words, false, choices[static_cast<std::size_t>(index)].name);
   }
 
+  void choices(const char* key, std::vector<int>& chosen, std::span<const Choice> choices,
+               const char* meaning) override {
+    Json::Value schema, standard(Json::arrayValue);
+    schema["type"] = "array";
+    schema["uniqueItems"] = true;
+    std::string words = meaning;
+    for (const Choice& choice : choices) {
+      schema["items"]["enum"].append(choice.name);
+      words += std::string("\n- ") + choice.name + ": " + choice.meaning;
+    }
+    for (const int index : chosen) standard.append(choices[static_cast<std::size_t>(index)].name);
+    add(key, schema, words, false, standard);
+  }
+
   void object(const char* key, bool&, bool required, const char* meaning,
               const std::function<void(Fields&)>& describe) override {
     SchemaFields fields;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <thread>
 
 #include "engine/io/checkpoint.h"
@@ -63,7 +62,9 @@ class SimulationOf final : public Simulation {
 
   const Counters& counters() const override { return state_.counters; }
   std::size_t particles() const override { return state_.particles(); }
-  PointCloud points(bool channels) const override;
+  PointCloud points(const PointsWanted& wanted) const override {
+    return make_points(scene_, state_, *stepper_.plan().kernels, wanted);
+  }
   Diagnostics diagnose() override { return repose::diagnose(scene_, solids_, state_, stepper_.threads()); }
   std::uint64_t hash() const override { return state_hash(state_); }
   MemoryUse memory() const override {
@@ -152,57 +153,6 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     frame.profile.seconds[k] = stepper_.profile().seconds[k] - before.seconds[k];
   }
   return frame;
-}
-
-template <class Real>
-PointCloud SimulationOf<Real>::points(bool channels) const {
-  PointCloud cloud;
-  const std::size_t count = state_.particles();
-  cloud.spacing = state_.spacing;
-  cloud.position.resize(count);
-  cloud.velocity.resize(count);
-  cloud.id.resize(count);
-  cloud.radius.resize(count);
-  PointAttribute material{"material", 1, std::vector<float>(count)};
-  std::vector<PointAttribute> extra;  // every channel of every set; zero where a set lacks it
-  const auto extra_of = [&](const std::string& name) -> std::vector<float>& {
-    for (PointAttribute& attribute : extra) {
-      if (attribute.name == name) return attribute.values;
-    }
-    extra.push_back({name, 1, std::vector<float>(count)});
-    return extra.back().values;
-  };
-  const auto owners = state_.grid.owners();
-  for (const auto& set : state_.sets) {
-    // A sphere of half the particle's volume: grains that touch without hiding one another.
-    const double radius = std::cbrt(3.0 / (4.0 * std::numbers::pi) * 0.5 * set.particle_volume);
-    const auto kind = static_cast<float>(scene_.materials[static_cast<std::size_t>(set.material)].law());
-    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(owners[owner])];
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-        const std::size_t at = set.id[p];  // ids count from 0 without gaps
-        const Vec3 x = state_.world(
-            block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-        cloud.position[at] = {x[0], x[1], x[2]};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          cloud.velocity[at][axis] = static_cast<float>(set.velocity[axis][p]);
-        }
-        cloud.id[at] = set.id[p];
-        cloud.radius[at] = static_cast<float>(radius);
-        material.values[at] = kind;
-      }
-    }
-  }
-  if (scene_.materials.size() > 1) cloud.attributes.push_back(std::move(material));
-  for (const auto& set : state_.sets) {
-    if (!channels) break;
-    for (const auto& channel : set.extra) {
-      std::vector<float>& values = extra_of(channel.name);
-      for (std::size_t p = 0; p < set.count; ++p) values[set.id[p]] = static_cast<float>(channel.values[p]);
-    }
-  }
-  for (PointAttribute& attribute : extra) cloud.attributes.push_back(std::move(attribute));
-  return cloud;
 }
 
 template <class Real>

@@ -11,10 +11,10 @@
 #include "engine/base/profile.h"
 #include "engine/base/result.h"
 #include "engine/effect/solid.h"
-#include "engine/io/point_cloud.h"
 #include "engine/scene/compiler.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/diagnostics.h"
+#include "engine/simulation/points.h"
 #include "engine/step/stepper.h"
 
 namespace repose {
@@ -57,9 +57,8 @@ class Simulation {
 
   virtual const Counters& counters() const = 0;
   virtual std::size_t particles() const = 0;
-  /// Positions, velocities, ids and radii of all particles, in id order; where a scene has several materials,
-  /// the attribute "material" is its place in the list; `channels` adds what effects keep.
-  virtual PointCloud points(bool channels = false) const = 0;
+  /// All particles in the order of their ids, with what is wanted of them (engine/simulation/points.h).
+  virtual PointCloud points(const PointsWanted& wanted = {}) const = 0;
   virtual Diagnostics diagnose() = 0;
   virtual std::uint64_t hash() const = 0;
   virtual MemoryUse memory() const = 0;

@@ -1,6 +1,9 @@
 // Repose tests: `repose run`: what it leaves, what it says of itself, and that threads change no bit of it.
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "tests/apps/command_probe.h"
 
 namespace repose {
@@ -97,6 +100,48 @@ TEST_F(CommandRun, Outputs_AreThoseTheSceneAsks) {
             0);
   EXPECT_EQ(files_with(path("none"), ".vdb") + files_with(path("none"), ".checkpoint"), 0u);
   EXPECT_EQ(files_with(path("none"), "run.json"), 1u);
+}
+
+TEST_F(CommandRun, AttributesSurfaceAndFog_AreWrittenWhereAsked) {
+  const std::string scene =
+      tiny_scene(R"(, "output": {"vtp": true, "attributes": ["stress", "density"], "surface": {}, "fog": {}})");
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "2", "--quiet"}).code, 0);
+  EXPECT_EQ(files_with(path("out"), ".vdb"), 6u);
+  std::ifstream file(path("out/tiny.points.0001.vtp"), std::ios::binary);
+  const std::string vtp{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(vtp, HasSubstr("Name=\"stress\" NumberOfComponents=\"6\""));
+  const Finished info = repose({"info", path("out/tiny.points.0002.vdb"), path("out/tiny.surface.0002.vdb"),
+                                path("out/tiny.fog.0002.vdb")});
+  ASSERT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("1000 points"));
+  EXPECT_THAT(info.out, HasSubstr(" stress ("));
+  EXPECT_THAT(info.out,
+              ::testing::ContainsRegex("surface.0002.vdb: 1 grid\n  surface \\(float\\): [0-9]+ voxels of "
+                                       "0.01 m\n    bounds  \\("));
+  EXPECT_THAT(info.out,
+              ::testing::ContainsRegex("fog.0002.vdb: 2 grids\n  density \\(float\\): [0-9]+ voxels of "
+                                       "0.02 m"));
+  EXPECT_THAT(info.out, HasSubstr("\n  v (vec3s): "));
+  ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("plain"), "--frames", "2", "--quiet"}).code, 0);
+  EXPECT_EQ(files_with(path("plain"), ".vdb"), 2u);
+  EXPECT_EQ(hash_of_last_frame(path("plain")), hash_of_last_frame(path("out"))) << "no bit of the run changes";
+}
+
+TEST_F(CommandRun, SurfaceOfOneAndTwoThreads_SameBytes) {
+  const std::string scene = tiny_scene(R"(, "output": {"surface": {}, "fog": {}, "attributes": ["stress"]})");
+  for (const char* threads : {"1", "2"}) {
+    ASSERT_EQ(
+        repose({"run", scene, "--out", path(threads), "--frames", "2", "--threads", threads, "--quiet"}).code,
+        0);
+  }
+  for (const char* name : {"points", "surface", "fog"}) {
+    const auto bytes = [&](const std::string& folder) {
+      std::ifstream file(path(folder + "/tiny." + name + ".0002.vdb"), std::ios::binary);
+      return std::string{std::istreambuf_iterator<char>(file), {}};
+    };
+    EXPECT_GT(bytes("1").size(), 1000u);
+    EXPECT_EQ(bytes("1"), bytes("2")) << name;
+  }
 }
 
 TEST_F(CommandRun, FramesFromTo_WritesOnlyThose) {

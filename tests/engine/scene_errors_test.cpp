@@ -68,6 +68,40 @@ TEST(SceneErrors, Syntax_LineAndColumn) {
   EXPECT_EQ(errors("[]"), "s.json:1:1: found a list; a scene is an object {...}");
 }
 
+TEST(SceneErrors, ListOfNames_EachIsChecked) {
+  const auto attributes = [](const std::string& list) {
+    return errors(with("\"colliders\"", "\"output\": {\"attributes\": " + list + "},\n  \"colliders\""));
+  };
+  EXPECT_EQ(attributes("[\"stress\", \"speed\"]"), "");
+  EXPECT_EQ(attributes("[]"), "");
+  EXPECT_EQ(
+      attributes("[\"stress\", \"presure\"]"),
+      "s.json:9:39: output.attributes[1]: found text \"presure\"; expected one of \"stress\", \"pressure\", "
+      "\"elastic_strain\", \"density\", \"speed\", \"channels\"; did you mean \"pressure\"?");
+  EXPECT_EQ(attributes("[\"speed\", \"speed\"]"),
+            "s.json:9:38: output.attributes[1]: text \"speed\" is there twice; once is enough");
+  EXPECT_THAT(attributes("\"speed\""),
+              testing::HasSubstr("found text \"speed\"; expected a list of names, each one of"));
+  EXPECT_THAT(attributes("[7]"), testing::HasSubstr("output.attributes[0]: found 7; expected one of"));
+}
+
+TEST(SceneErrors, VoxelsOfFiles_FineAndCoarseOnesAreRefused) {
+  const auto output = [](const std::string& keys) {
+    return errors(with("\"colliders\"", "\"output\": {" + keys + "},\n  \"colliders\""));
+  };
+  EXPECT_EQ(output("\"surface\": {\"voxel\": 0.1}, \"fog\": {\"voxel\": 1}"), "");
+  EXPECT_EQ(output("\"surface\": {\"voxel\": 0.001}"),
+            "s.json:9:35: output.surface.voxel: must be at least a sixteenth of grid.spacing, 0.00625 m");
+  EXPECT_EQ(
+      output("\"surface\": {\"voxel\": 0.11}"),
+      "s.json:9:35: output.surface.voxel: must be at most grid.spacing, 0.1 m: particles fall through coarser "
+      "ones");
+  EXPECT_EQ(output("\"fog\": {\"voxel\": 0.001}"),
+            "s.json:9:31: output.fog.voxel: must be at least a sixteenth of grid.spacing, 0.00625 m");
+  EXPECT_THAT(output("\"surface\": {\"radius\": 0.1}"),
+              testing::HasSubstr("output.surface.radius: 0.1 is out of range"));
+}
+
 TEST(SceneErrors, RepeatedKey_Refused) {
   EXPECT_EQ(errors(with("\"spacing\": 0.1", "\"spacing\": 0.1, \"spacing\": 0.2")),
             "s.json:4:28: not JSON: Duplicate key: 'spacing'");

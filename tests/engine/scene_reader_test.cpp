@@ -42,7 +42,9 @@ constexpr const char* kWhole = R"({
                  "hollow": true, "contact": "slip", "friction": 0.3}],
   "gravity": {"ramp": 0.1},
   "volume_correction": {},
-  "output": {"vdb": false, "ply": true, "vtp": true, "checkpoint": false},
+  "output": {"vdb": false, "ply": true, "vtp": true, "checkpoint": false,
+             "attributes": ["speed", "stress", "channels"], "fog": {"voxel": 0.04},
+             "surface": {"voxel": 0.01, "radius": 1.5, "smoothing": 0}},
   "camera": {"eye": [3, 2, 1], "target": [0, 0, 1], "field_of_view": 50}
 })";
 
@@ -85,6 +87,14 @@ TEST(SceneReader, WholeScene_SectionsArrive) {
   EXPECT_TRUE(scene.output.ply);
   EXPECT_TRUE(scene.output.vtp);
   EXPECT_FALSE(scene.output.checkpoint);
+  using enum OutputAttribute;
+  EXPECT_EQ(scene.output.attributes, (std::vector<OutputAttribute>{kSpeed, kStress, kChannels}));
+  EXPECT_TRUE(scene.output.surface.given);
+  EXPECT_DOUBLE_EQ(scene.output.surface.voxel, 0.01);
+  EXPECT_EQ(scene.output.surface.radius, 1.5);
+  EXPECT_EQ(scene.output.surface.smoothing, 0);
+  EXPECT_TRUE(scene.output.fog.given);
+  EXPECT_EQ(scene.output.fog.voxel, 0.04);
   EXPECT_TRUE(scene.camera.given);
   EXPECT_EQ(scene.camera.eye, Vec3(3, 2, 1));
   EXPECT_EQ(scene.camera.target, Vec3(0, 0, 1));
@@ -182,6 +192,8 @@ TEST(SceneReader, Overrides_ReachByIndexAndByName) {
 
 TEST(SceneReader, OverrideBelowAKeyThatIsNotThere_MakesIt) {
   EXPECT_TRUE(read(kSmall, {"output.vtp=true"}).output.vtp);
+  EXPECT_FALSE(read(kSmall).output.surface.given || read(kSmall).output.fog.given);
+  EXPECT_EQ(read(kSmall, {"output.attributes=[\"density\"]"}).output.attributes.size(), 1u);
   EXPECT_EQ(read(kSmall, {"gravity.acceleration=[0, 0, 1]"}).effect<Gravity>().acceleration, Vec3(0, 0, 1));
 }
 

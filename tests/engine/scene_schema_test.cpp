@@ -112,6 +112,17 @@ TEST(SceneSchema, Forms_AreClosedAndShareCommonKeys) {
   EXPECT_TRUE(form(shape, "box")["properties"].isMember("upper"));
 }
 
+TEST(SceneSchema, ListOfNames_IsClosedAndHasNoneTwice) {
+  const Json::Value schema = parsed_schema();
+  const Json::Value& attributes = property(property(schema, "output"), "attributes");
+  EXPECT_EQ(attributes["type"].asString(), "array");
+  EXPECT_EQ(attributes["items"]["enum"].size(), 6u);
+  EXPECT_TRUE(attributes["uniqueItems"].asBool());
+  EXPECT_TRUE(attributes["default"].isArray() && attributes["default"].empty());
+  EXPECT_NE(scene_reference().find("| `attributes` | | [] | list of any of `stress`: Cauchy stress"),
+            std::string::npos);
+}
+
 TEST(SceneReference, EveryKeyOfTheSchema_HasARow) {
   std::set<std::string> keys;
   collect_keys(parsed_schema(), keys);

@@ -6,7 +6,8 @@
 FOLDER holds NAME.0001.vdb, NAME.0001.ply, NAME.0001.vtp (NAME is out.points unless told) and NAME.json, written
 beside them by who exported them:
     {"count": 3, "first_ids": [0, 1, 2], "bounds": [[0, 0, 0], [1, 1, 1]], "spacing": 0.1, "attributes": ["age"]}
-first_ids are the ids of the first particles as written; attributes are the names of further scalars (may lack).
+first_ids are the ids of the first particles as written; attributes are the names of further scalars, tensors of those
+with six components (both may lack).
 Debian: libopenvdb-tools (vdb_print, vdb_tool), python3-meshio (PLY with all properties; VTK drops v),
 python3-vtk9 (VTP; meshio has no VTP).
 """
@@ -73,7 +74,8 @@ def check_ply(path, expected):
     mesh = meshio.read(path)
     expect_points("meshio PLY", mesh.points, expected, 1e-3 * expected["spacing"])
     expect_arrays("meshio PLY", mesh.point_data, expected)
-    for name in ("vx", "vy", "vz", "radius"):
+    parts = [f"{name}_{part}" for name in expected.get("tensors", []) for part in ("xx", "yy", "zz", "xy", "yz", "xz")]
+    for name in ("vx", "vy", "vz", "radius", *parts):
         expect(name in mesh.point_data, f"meshio PLY: property {name}")
 
 
@@ -92,6 +94,9 @@ def check_vtp(path, expected):
     expect_arrays("VTK", arrays, expected)
     expect(arrays["v"].shape == (expected["count"], 3), "VTK: v has three components")
     expect("pscale" in arrays, "VTK: pscale")
+    for name in expected.get("tensors", []):
+        good = name in arrays and arrays[name].shape == (expected["count"], 6) and np.isfinite(arrays[name]).all()
+        expect(good, f"VTK: {name} has six components")
 
 
 def main():

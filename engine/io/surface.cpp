@@ -1,0 +1,353 @@
+// Repose: surface and fog, on OpenVDB. All lengths are in voxels until a grid is done, and those of the surface
+// count from near the middle of the cloud: OpenVDB meshes in float, which far from the origin has no digits
+// left.
+#include "engine/io/surface.h"
+
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointDataGrid.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Filter.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/parallel.h"
+#include "engine/io/point_layout.h"
+#include "engine/io/vdb_file.h"
+
+namespace repose {
+namespace {
+
+namespace vdb = openvdb;
+using FloatLeaf = vdb::FloatTree::LeafNodeType;
+
+constexpr float kBand = 3.0f;    // of a level set, voxels to either side
+constexpr float kMargin = 1.5f;  // voxels about the balls in which distances are known, for meshing
+
+// How far the surface lies outside the outermost particles, in the radius that a cloud gives them, which is
+// half the distance to their neighbours. Measured: with it the surface of a filled box encloses the volume of
+// the box whether its particles lie on a lattice, jittered or as Poisson disks (tests/io/surface_test.cpp).
+constexpr double kOutside = 0.85;
+
+Error out_of_range(const std::string& what, const std::string& path) {
+  return {ErrorKind::kUsage, what, path};
+}
+
+/// The whole file: the grids that `make` gives.
+template <class Make>
+Result<void> write_grids(const std::string& path, Make&& make) {
+  // The file before the work: a folder that refuses is told at once.
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return file.error();
+  const Result<vdb::GridCPtrVec> grids =
+      without_exceptions(path, "building the grid", [&]() -> Result<vdb::GridCPtrVec> {
+        vdb::initialize();
+        vdb::GridCPtrVec made;
+        // One thread: OpenVDB's meshing may depend on which triangle of two comes first.
+        Threads(1).for_each(1, [&](std::size_t) { made = make(); });
+        return made;
+      });
+  if (!grids) return grids.error();
+  const Result<void> done = stream_vdb(*file, path, [&](std::ostream& stream) {
+    vdb::MetaMap meta;
+    meta.insertMeta("creator", vdb::StringMetadata("repose"));
+    vdb::io::Stream archive(stream);
+    archive.setCompression(vdb::io::COMPRESS_ACTIVE_MASK | vdb::io::COMPRESS_BLOSC);
+    archive.write(*grids, meta);
+  });
+  if (!done) return done;
+  return file->commit();
+}
+
+Result<void> check_voxels(const PointCloud& points, double voxel, const std::string& path) {
+  if (Result<void> good = check_cloud(points, path); !good) return good;
+  constexpr double kFinest = 1.0 / 16.0;  // spacings
+  if (!(voxel > 0.0) || !(voxel >= kFinest * points.spacing * (1.0 - 1e-9))) {
+    return out_of_range("needs voxels of at least a sixteenth of the spacing", path);
+  }
+  constexpr double kMostVoxels = 1 << 30;  // half the range of a voxel coordinate
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (const double x : points.position[p]) {
+      if (std::abs(x) < kMostVoxels * voxel) continue;
+      return Error{ErrorKind::kIo,
+                   "particle " + std::to_string(points.id[p]) + " is more than 2^30 voxels from the origin",
+                   path};
+    }
+  }
+  return {};
+}
+
+// --- The surface
+
+/// The multiple of `step` nearest to the middle of the cloud's bounds; voxels.
+vdb::Vec3d middle_of(const PointCloud& points, double voxel, double step) {
+  vdb::BBoxd bounds;
+  for (const auto& x : points.position) bounds.expand(vdb::Vec3d(x.data()) / voxel);
+  vdb::Vec3d middle(0.0);
+  for (int axis = 0; points.size() > 0 && axis < 3; ++axis) {
+    middle[axis] = step * std::round(bounds.getCenter()[axis] / step);
+  }
+  return middle;
+}
+
+/// A ball, or on a flat axis a stretch of `half` to either side of one.
+struct Ball {
+  vdb::Vec3d center;
+  float radius;
+  int flat_axis;
+  float half;
+};
+
+/// Lowers the values of a leaf to the distances from a ball.
+void add_to_leaf(const Ball& ball, FloatLeaf& leaf) {
+  constexpr std::size_t kSide = FloatLeaf::DIM;
+  float square[3][kSide];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < kSide; ++k) {
+      const double at = leaf.origin()[axis] + static_cast<double>(k) - ball.center[axis];
+      const float away = static_cast<float>(std::abs(at)) - (axis == ball.flat_axis ? ball.half : 0.0f);
+      square[axis][k] = away > 0.0f ? away * away : 0.0f;
+    }
+  }
+  const float most = (ball.radius + kMargin) * (ball.radius + kMargin);
+  float* values = leaf.buffer().data();
+  for (std::size_t x = 0; x < kSide; ++x) {
+    for (std::size_t y = 0; y < kSide; ++y) {
+      const float across = square[0][x] + square[1][y];
+      if (across >= most) continue;
+      float* row = values + (x * kSide + y) * kSide;
+      for (std::size_t z = 0; z < kSide; ++z) {
+        row[z] = std::min(row[z], std::sqrt(across + square[2][z]) - ball.radius);
+      }
+    }
+  }
+}
+
+/// Distance from the union of balls, as far out as kMargin. Inside it is that to the nearest ball's surface.
+vdb::FloatGrid::Ptr unite(const PointCloud& points, const SurfaceOptions& options, const vdb::Vec3d& origin) {
+  auto grid = vdb::FloatGrid::create(kMargin);
+  auto accessor = grid->getAccessor();
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double outside = kOutside * points.radius[p];
+    const double half = std::max(0.0, 0.5 * points.spacing - outside);
+    const Ball ball{vdb::Vec3d(points.position[p].data()) / options.voxel - origin,
+                    static_cast<float>((outside + options.radius) / options.voxel),
+                    options.flat_axis.value_or(-1), static_cast<float>(half / options.voxel)};
+    vdb::Coord lower, upper;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double reach = ball.radius + kMargin + (axis == ball.flat_axis ? ball.half : 0.0f);
+      lower[axis] =
+          static_cast<int>(std::floor(ball.center[axis] - reach)) & ~(static_cast<int>(FloatLeaf::DIM) - 1);
+      upper[axis] = static_cast<int>(std::ceil(ball.center[axis] + reach));
+    }
+    const int side = FloatLeaf::DIM;
+    for (int x = lower[0]; x <= upper[0]; x += side) {
+      for (int y = lower[1]; y <= upper[1]; y += side) {
+        for (int z = lower[2]; z <= upper[2]; z += side) add_to_leaf(ball, *accessor.touchLeaf({x, y, z}));
+      }
+    }
+  }
+  for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf) {
+    for (auto value = leaf->beginValueOff(); value; ++value) {
+      if (*value < kMargin) value.setValueOn();
+    }
+  }
+  return grid;
+}
+
+/// Each distance averaged over its 27 neighbours, `times` over. Before the surface is drawn back, so that thin
+/// streams are not worn away; and of true distances, since those to the nearest ball are smaller inside and
+/// their mean would shrink the surface.
+vdb::FloatGrid::Ptr smoothed(const vdb::FloatGrid& surface, int times) {
+  const float band = kBand + std::sqrt(static_cast<float>(times));  // as far as values travel
+  auto grid = vdb::tools::levelSetRebuild(surface, 0.0f, band, band);
+  vdb::tools::Filter<vdb::FloatGrid> filter(*grid);
+  filter.setGrainSize(0);
+  filter.mean(1, times);
+  return grid;
+}
+
+/// Moves a level set inwards by `depth`, from voxels to metres, and cuts its band to size.
+void draw_back(vdb::FloatGrid& grid, float depth, float voxel) {
+  for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf) {
+    for (auto value = leaf->beginValueOn(); value; ++value) {
+      const float moved = std::clamp(*value + depth, -kBand, kBand);
+      value.setValue(moved * voxel);
+      if (std::abs(moved) == kBand) value.setValueOff();
+    }
+  }
+  vdb::tools::changeLevelSetBackground(grid.tree(), kBand * voxel, false);
+  vdb::tools::pruneLevelSet(grid.tree(), false);
+}
+
+vdb::FloatGrid::Ptr make_surface(const PointCloud& points, const SurfaceOptions& options) {
+  // Scenes about the world's origin get no shift at all, so that frames share their voxels.
+  const vdb::Vec3d origin = middle_of(points, options.voxel, 4096.0);
+  const float depth = static_cast<float>(options.radius / options.voxel);
+  vdb::FloatGrid::Ptr surface = unite(points, options, origin);
+  if (options.smoothing > 0) surface = smoothed(*surface, options.smoothing);
+  surface = vdb::tools::levelSetRebuild(*surface, 0.0f, std::max(1.0f, kBand - depth), kBand + depth);
+  draw_back(*surface, depth, static_cast<float>(options.voxel));
+  surface->setTransform(vdb::math::Transform::createLinearTransform(options.voxel));
+  surface->transform().postTranslate(origin * options.voxel);
+  surface->setGridClass(vdb::GRID_LEVEL_SET);
+  surface->setName("surface");
+  return surface;
+}
+
+// --- The fog
+
+/// The quadratic spline about x: the first of three voxels, and their weights. On a flat axis there is one
+/// voxel.
+struct Spread {
+  Spread(double x, bool flat) {
+    const double middle = std::round(x), d = x - middle;
+    first = static_cast<int>(middle) - (flat ? 0 : 1);
+    if (flat) return;
+    weight = {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)};
+    count = 3;
+  }
+  int first = 0, count = 1;
+  std::array<double, 3> weight{1.0, 0.0, 0.0};
+};
+
+/// Voxel edges; on a flat axis the spacing, with the particles midway.
+vdb::math::Transform::Ptr fog_transform(const PointCloud& points, const FogOptions& options) {
+  vdb::Vec3d edges(options.voxel), origin(0.0);
+  if (options.flat_axis && points.size() > 0) {
+    const auto axis = static_cast<std::size_t>(*options.flat_axis);
+    edges[*options.flat_axis] = points.spacing;
+    origin[*options.flat_axis] = points.position[0][axis];
+  }
+  auto transform = vdb::math::Transform::createLinearTransform();
+  transform->preScale(edges);
+  transform->postTranslate(origin);
+  return transform;
+}
+
+/// Adds mass and momentum of all particles to the voxels about them.
+void splat(const PointCloud& points, const FogOptions& options, vdb::FloatGrid& mass,
+           vdb::Vec3SGrid& momentum) {
+  auto masses = mass.getAccessor();
+  auto momenta = momentum.getAccessor();
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const vdb::Vec3d x = mass.transform().worldToIndex(vdb::Vec3d(points.position[p].data()));
+    const int flat = options.flat_axis.value_or(-1);
+    const Spread along[3] = {{x[0], flat == 0}, {x[1], flat == 1}, {x[2], flat == 2}};
+    const vdb::Vec3s velocity(points.velocity[p].data());
+    for (int i = 0; i < along[0].count; ++i) {
+      for (int j = 0; j < along[1].count; ++j) {
+        for (int k = 0; k < along[2].count; ++k) {
+          const auto share = static_cast<float>(along[0].weight[i] * along[1].weight[j] * along[2].weight[k] *
+                                                double(points.mass[p]));
+          const vdb::Coord voxel(along[0].first + i, along[1].first + j, along[2].first + k);
+          masses.modifyValue(voxel, [share](float& sum) { sum += share; });
+          momenta.modifyValue(voxel, [&](vdb::Vec3s& sum) { sum += share * velocity; });
+        }
+      }
+    }
+  }
+}
+
+/// Turns mass into density and momentum into velocity.
+void divide(vdb::FloatGrid& mass, vdb::Vec3SGrid& momentum, double volume) {
+  auto momenta = momentum.tree().beginLeaf();
+  for (auto leaf = mass.tree().beginLeaf(); leaf; ++leaf, ++momenta) {
+    for (auto value = leaf->beginValueOn(); value; ++value) {
+      const vdb::Vec3s sum = momenta->getValue(value.pos());
+      // A weight can round to nothing.
+      momenta->setValueOnly(value.pos(), *value > 0.0f ? sum / *value : vdb::Vec3s(0.0f));
+      value.setValue(static_cast<float>(double(*value) / volume));
+    }
+  }
+}
+
+vdb::GridCPtrVec make_fog(const PointCloud& points, const FogOptions& options) {
+  const auto transform = fog_transform(points, options);
+  auto density = vdb::FloatGrid::create(0.0f);
+  auto velocity = vdb::Vec3SGrid::create(vdb::Vec3s(0.0f));
+  density->setTransform(transform);
+  velocity->setTransform(transform);
+  splat(points, options, *density, *velocity);
+  divide(*density, *velocity, transform->voxelSize().product());
+  density->setName("density");
+  density->setGridClass(vdb::GRID_FOG_VOLUME);
+  velocity->setName("v");
+  velocity->setVectorType(vdb::VEC_CONTRAVARIANT_RELATIVE);
+  return {density, velocity};
+}
+
+// --- Reading
+
+template <class GridType, class Size>
+void find_range(const vdb::GridBase& base, Size size, GridFigures& figures) {
+  const auto* grid = dynamic_cast<const GridType*>(&base);
+  if (grid == nullptr || figures.active == 0) return;
+  figures.least = std::numeric_limits<double>::infinity();
+  figures.most = -figures.least;
+  for (auto value = grid->cbeginValueOn(); value; ++value) {
+    figures.least = std::min(figures.least, double(size(*value)));
+    figures.most = std::max(figures.most, double(size(*value)));
+  }
+}
+
+GridFigures figures_of(const vdb::GridBase& grid) {
+  GridFigures figures;
+  figures.name = grid.getName();
+  figures.type = grid.valueType();
+  figures.points = grid.isType<vdb::points::PointDataGrid>();
+  figures.active = grid.activeVoxelCount();
+  const vdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  const vdb::Vec3d half(0.5), voxel = grid.voxelSize();
+  const vdb::Vec3d lower = grid.indexToWorld(box.min().asVec3d() - half),
+                   upper = grid.indexToWorld(box.max().asVec3d() + half);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    figures.voxel[k] = voxel[axis];
+    figures.lower[k] = lower[axis];
+    figures.upper[k] = upper[axis];
+  }
+  find_range<vdb::FloatGrid>(
+      grid, [](float value) { return value; }, figures);
+  find_range<vdb::Vec3SGrid>(
+      grid, [](const vdb::Vec3s& value) { return value.length(); }, figures);
+  return figures;
+}
+
+}  // namespace
+
+Result<void> write_surface(const PointCloud& points, const SurfaceOptions& options, const std::string& path) {
+  if (Result<void> good = check_voxels(points, options.voxel, path); !good) return good;
+  if (points.size() > 0 && !(options.voxel <= points.spacing * (1.0 + 1e-9))) {
+    return out_of_range("needs voxels of at most the spacing: particles fall through coarser ones", path);
+  }
+  if (!(options.radius >= 0.5 * points.spacing * (1.0 - 1e-9)) ||
+      !(options.radius <= 4.0 * points.spacing * (1.0 + 1e-9)) || options.smoothing < 0) {
+    return out_of_range("needs a radius from half a spacing to four, and smoothing of at least 0", path);
+  }
+  return write_grids(path, [&] { return vdb::GridCPtrVec{make_surface(points, options)}; });
+}
+
+Result<void> write_fog(const PointCloud& points, const FogOptions& options, const std::string& path) {
+  if (Result<void> good = check_voxels(points, options.voxel, path); !good) return good;
+  if (points.mass.size() != points.size()) return out_of_range("needs the mass of each particle", path);
+  return write_grids(path, [&] { return make_fog(points, options); });
+}
+
+Result<std::vector<GridFigures>> read_grid_figures(const std::string& path) {
+  Result<std::ifstream> file = open_vdb(path);
+  if (!file) return file.error();
+  return without_exceptions(path, "reading failed", [&]() -> Result<std::vector<GridFigures>> {
+    vdb::initialize();
+    vdb::io::Stream archive(*file, /*delayLoad=*/false);
+    std::vector<GridFigures> figures;
+    for (const vdb::GridBase::Ptr& grid : *archive.getGrids()) figures.push_back(figures_of(*grid));
+    return figures;
+  });
+}
+
+}  // namespace repose
