@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <new>
 #include <numbers>
 #include <thread>
 
@@ -33,6 +34,16 @@ std::string describe_offender(const Offender& offender, const StepReport& report
   return text;
 }
 
+/// All ids, ascending: they have gaps where particles have ended.
+template <class Real>
+std::vector<std::uint32_t> sorted_ids(const State<Real>& state) {
+  std::vector<std::uint32_t> ids;
+  ids.reserve(state.particles());
+  for (const auto& set : state.sets) ids.insert(ids.end(), set.id.data(), set.id.data() + set.count);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
 template <class Real>
 class SimulationOf final : public Simulation {
  public:
@@ -50,11 +61,9 @@ class SimulationOf final : public Simulation {
   }
 
   Result<StepReport> step() override {
-    const StepReport report = stepper_.step(state_, std::numeric_limits<double>::infinity());
-    offender_ = report.offender;
-    if (!report.accepted)
-      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
-    state_.counters.time += report.dt;
+    auto report = try_step(std::numeric_limits<double>::infinity());
+    if (!report) return report;
+    state_.counters.time += report->dt;
     watch_speed();
     return report;
   }
@@ -65,6 +74,7 @@ class SimulationOf final : public Simulation {
   std::size_t particles() const override { return state_.particles(); }
   PointCloud points(bool channels) const override;
   Diagnostics diagnose() override { return repose::diagnose(scene_, solids_, state_, stepper_.threads()); }
+  LedgerReport ledger() const override { return ledger_report(scene_, state_); }
   std::uint64_t hash() const override { return state_hash(state_); }
   MemoryUse memory() const override {
     return {state_.particle_bytes(), stepper_.bytes(),   stepper_.scratch_bytes(),
@@ -94,6 +104,26 @@ class SimulationOf final : public Simulation {
   }
 
  private:
+  /// Only what emitters make can need memory that nobody has counted before the run.
+  template <class Work>
+  auto unless_memory_ends(const Work& work) -> decltype(work()) {
+    try {
+      return work();
+    } catch (const std::bad_alloc&) {
+      return Error{ErrorKind::kMemory, "memory ran out; a coarser grid.spacing needs less", scene_.name};
+    }
+  }
+
+  Result<StepReport> try_step(double remaining) {
+    return unless_memory_ends([&]() -> Result<StepReport> {
+      StepReport report = stepper_.step(state_, remaining);
+      offender_ = report.offender;
+      if (report.error) return *report.error;
+      if (report.accepted) return report;
+      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+    });
+  }
+
   void watch_speed() {
     if (warned_of_speed_) return;
     if (auto warning = speed_warning(stepper_.plan(), state_)) {
@@ -124,11 +154,10 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   const double length = 1.0 / fps;
   while (counters.time_in_frame < length) {
     const double remaining = length - counters.time_in_frame;
-    const StepReport report = stepper_.step(state_, remaining);
+    const auto tried = try_step(remaining);
+    if (!tried) return tried.error();
+    const StepReport& report = *tried;
     frame.redone += report.redone;
-    offender_ = report.offender;
-    if (!report.accepted)
-      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
     // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
     const bool last = report.dt >= remaining * (1.0 - 1e-9);
     counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;
@@ -144,6 +173,8 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     counters.time_in_frame = 0.0;
     ++counters.frame;
     counters.time = static_cast<double>(counters.frame) / fps;
+    if (auto ended = unless_memory_ends([&] { return stepper_.end_frame(state_); }); !ended)
+      return ended.error();
   }
   frame.frame = counters.frame;
   frame.time = counters.time;
@@ -164,6 +195,10 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
   cloud.id.resize(count);
   cloud.radius.resize(count);
   PointAttribute material{"material", 1, std::vector<float>(count)};
+  const std::vector<std::uint32_t> ids = sorted_ids(state_);
+  const auto place_of = [&ids](std::uint32_t id) {
+    return static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  };
   std::vector<PointAttribute> extra;  // every channel of every set; zero where a set lacks it
   const auto extra_of = [&](const std::string& name) -> std::vector<float>& {
     for (PointAttribute& attribute : extra) {
@@ -180,7 +215,7 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
     for (std::size_t owner = 0; owner < owners.size(); ++owner) {
       const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(owners[owner])];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-        const std::size_t at = set.id[p];  // ids count from 0 without gaps
+        const std::size_t at = place_of(set.id[p]);
         const Vec3 x = state_.world(
             block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
         cloud.position[at] = {x[0], x[1], x[2]};
@@ -198,7 +233,8 @@ PointCloud SimulationOf<Real>::points(bool channels) const {
     if (!channels) break;
     for (const auto& channel : set.extra) {
       std::vector<float>& values = extra_of(channel.name);
-      for (std::size_t p = 0; p < set.count; ++p) values[set.id[p]] = static_cast<float>(channel.values[p]);
+      for (std::size_t p = 0; p < set.count; ++p)
+        values[place_of(set.id[p])] = static_cast<float>(channel.values[p]);
     }
   }
   for (PointAttribute& attribute : extra) cloud.attributes.push_back(std::move(attribute));
@@ -212,6 +248,7 @@ std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes(
   const auto add = [&list](const std::string& phase, const auto& passes) {
     for (const auto& pass : passes) list.emplace_back(phase, pass.description);
   };
+  add("events", plan.events);
   add("order", plan.order);
   for (std::size_t k = 0; k < plan.scatter.size(); ++k) add("scatter " + state_.sets[k].name, plan.scatter[k]);
   add("nodes", plan.nodes);
