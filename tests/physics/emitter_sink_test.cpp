@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numbers>
 
 #include "tests/physics/physics_probe.h"
@@ -117,25 +116,21 @@ TEST(Emitter, StreamIsAsDenseAsItsMaterial_WhateverTheStep) {
   }
 }
 
+// v^2 = v0^2 + 2 g h. Without its fall while it waits, all of the stream would be slow by about half of what
+// gravity adds until it has gone a cell, 0.06 m/s.
 TEST(Emitter, WhatWaits_FallsLikeWhatIsThere) {
-  const auto places = [](const char* step) {
+  for (const char* step : {"time.max_step=0.0005", "time.max_step=1"}) {
     const auto simulation = simulate(scene_of(kColumn, {step, kFalling, kLoose}));
-    EXPECT_TRUE(run_frames(*simulation, 4));
-    return simulation->points();
-  };
-  const PointCloud fine = places("time.max_step=0.0005"), coarse = places("time.max_step=1");
-  ASSERT_EQ(fine.size(), coarse.size());
-  double fastest = 0.0, worst = 0.0;
-  for (std::size_t p = 0; p < fine.size(); ++p) {
-    worst = std::max(worst, std::abs(fine.position[p][1] - coarse.position[p][1]) / kSpacing);
-    // v^2 = v0^2 + 2 g h
-    const double v = std::sqrt(kSpeed * kSpeed - 2.0 * 9.81 * coarse.position[p][1]);
-    fastest = std::max(fastest, std::abs(-coarse.velocity[p][1] - v));
+    ASSERT_TRUE(run_frames(*simulation, 4));
+    const PointCloud points = simulation->points();
+    double mean = 0.0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      mean += -points.velocity[p][1] - std::sqrt(kSpeed * kSpeed - 2.0 * 9.81 * points.position[p][1]);
+    }
+    mean /= static_cast<double>(points.size());
+    report("mean difference from free fall", mean, "m/s");
+    EXPECT_NEAR(mean, 0.0, 0.012);
   }
-  report("largest difference of depths", worst, "cells");
-  report("largest difference from free fall", fastest, "m/s");
-  EXPECT_LT(worst, 0.15);
-  EXPECT_LT(fastest, 0.05);
 }
 
 TEST(Emitter, PlaneStrainAndRectangle_FillTheirSection) {
@@ -264,8 +259,12 @@ std::vector<std::string> busy() {
       R"json(sinks=[{"name": "floor", "shape": {"type": "plane", "point": [0, -0.45, 0]}}])json"};
 }
 
-TEST(EmitterAndSink, OneTwoAndSevenThreads_SameBits) {
-  tbb::global_control control{tbb::global_control::max_allowed_parallelism, 7};
+/// Without this the library would never start more threads than the machine has cores.
+class EmitterAndSink : public testing::Test {
+  tbb::global_control control_{tbb::global_control::max_allowed_parallelism, 7};
+};
+
+TEST_F(EmitterAndSink, OneTwoAndSevenThreads_SameBits) {
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2, 7}) {
     const auto simulation = simulate(scene_of(kColumn, busy()), threads);
@@ -278,7 +277,7 @@ TEST(EmitterAndSink, OneTwoAndSevenThreads_SameBits) {
   EXPECT_EQ(hashes[2], hashes[0]);
 }
 
-TEST(EmitterAndSink, MillionCellsAway_SameBits) {
+TEST_F(EmitterAndSink, MillionCellsAway_SameBits) {
   std::vector<std::string> far = busy();
   far.push_back("grid.origin_cells=[1000000,-1000000,8]");
   const auto here = simulate(scene_of(kColumn, busy())), there = simulate(scene_of(kColumn, far));
@@ -286,7 +285,7 @@ TEST(EmitterAndSink, MillionCellsAway_SameBits) {
   EXPECT_EQ(here->hash(), there->hash());
 }
 
-TEST(EmitterAndSink, ResumedInTheMiddle_SameBitsAndLedger) {
+TEST_F(EmitterAndSink, ResumedInTheMiddle_SameBitsAndLedger) {
   const std::string path =
       std::filesystem::temp_directory_path().string() + "/repose_emitter_" + std::to_string(getpid());
   const Scene scene = scene_of(kColumn, busy());
