@@ -117,7 +117,7 @@ TEST(Emitter, StreamIsAsDenseAsItsMaterial_WhateverTheStep) {
 }
 
 // v^2 = v0^2 + 2 g h. Without its fall while it waits, all of the stream would be slow by about half of what
-// gravity adds until it has gone a cell, 0.06 m/s.
+// gravity adds until it has gone a cell: by 0.04 m/s.
 TEST(Emitter, WhatWaits_FallsLikeWhatIsThere) {
   for (const char* step : {"time.max_step=0.0005", "time.max_step=1"}) {
     const auto simulation = simulate(scene_of(kColumn, {step, kFalling, kLoose}));
