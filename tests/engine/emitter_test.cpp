@@ -67,8 +67,8 @@ TEST(Stream, Disc_IsFilledEvenlyLayerByLayer) {
     mean += from.squaredNorm() / static_cast<double>(kLayers * sites);
     ++quarter[static_cast<int>(4.0 * from.squaredNorm() / 0.01)];  // rings of equal area
   }
-  EXPECT_NEAR(mean, 0.5 * 0.01, 0.5 * 0.01 * 0.003);
-  for (const int n : quarter) EXPECT_NEAR(n, 0.25 * static_cast<double>(kLayers * sites), 0.01 * n);
+  EXPECT_NEAR(mean, 0.5 * 0.01, 0.5 * 0.01 * 0.01);
+  for (const int n : quarter) EXPECT_NEAR(n, 0.25 * static_cast<double>(kLayers * sites), 0.03 * n);
 }
 
 TEST(Stream, Rectangle_EachLayerVisitsEachSiteOnceInItsOwnOrder) {
