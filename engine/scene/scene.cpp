@@ -255,6 +255,11 @@ void describe(Fields& fields, Scene& scene) {
     scene.effect<Emitters>().materials.push_back(material.name);
   }
   for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields); });
+  for (const Emitter& emitter : scene.effect<Emitters>().list) {
+    fields.check(
+        !is_named(scene.bodies, emitter.name), "emitters",
+        "\"" + emitter.name + "\" is the name of a body; choose another, for both are sets of particles");
+  }
   fields.check(!scene.bodies.empty() || !scene.effect<Emitters>().list.empty(), "bodies",
                "must hold at least one object, unless there is one in \"emitters\"");
   fields.check(

@@ -211,6 +211,13 @@ TEST(SceneErrors, EmittersAndSinks_SayWhatWouldBeRight) {
             "s.json:4:63: sinks[1].name: \"b\" is taken by another sink; choose another");
 }
 
+TEST(SceneErrors, EmitterNamedLikeABody_Refused) {
+  const std::string refusal = override_errors(
+      R"(emitters=[{"name": "heap", "material": "sand", "type": "disc", "center": [0, 0, 0], "radius": 1, "speed": 1}])");
+  EXPECT_NE(refusal.find(": emitters: \"heap\" is the name of a body; choose another"), std::string::npos)
+      << refusal;
+}
+
 TEST(SceneErrors, UnknownMaterial_NearestNamed) {
   EXPECT_EQ(errors(with("\"material\": \"sand\"", "\"material\": \"snad\"")),
             "s.json:7:34: bodies[0].material: no material \"snad\"; did you mean \"sand\"?");

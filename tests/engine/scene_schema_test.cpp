@@ -49,8 +49,8 @@ TEST(SceneSchema, Root_ListsEveryKeyAndNoOther) {
   EXPECT_EQ(schema["$schema"].asString(), "https://json-schema.org/draft/2020-12/schema");
   EXPECT_EQ(schema["properties"].getMemberNames(),
             (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "emitters", "gravity", "grid",
-                                      "materials", "name", "output", "parameters", "repose", "sinks", "time",
-                                      "up", "volume_correction"}));
+                                      "materials", "name", "output", "parameters", "prestress", "repose",
+                                      "sinks", "time", "up", "volume_correction", "wetting"}));
   EXPECT_FALSE(schema["additionalProperties"].asBool());
   std::set<std::string> required;
   for (const Json::Value& key : schema["required"]) required.insert(key.asString());
