@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -18,7 +19,7 @@ std::string hex(std::uint64_t value) {
 }
 
 Json::Value figures(const Simulation& simulation, std::int64_t steps, double seconds) {
-  const auto particles = static_cast<double>(simulation.particles());
+  const double particles = std::max(1.0, static_cast<double>(simulation.particles()));
   const double per = 1e9 / (particles * static_cast<double>(steps));
   const MemoryUse memory = simulation.memory();
   Json::Value json;
@@ -36,7 +37,8 @@ Json::Value figures(const Simulation& simulation, std::int64_t steps, double sec
   json["bytes_per_particle"] = static_cast<double>(memory.particle_bytes + memory.order_bytes) / particles;
   json["scratch_bytes"] = Json::UInt64(memory.scratch_bytes);
   json["grid_bytes"] = Json::UInt64(memory.grid_bytes);
-  json["grid_bytes_per_block"] = static_cast<double>(memory.grid_bytes) / static_cast<double>(memory.blocks);
+  json["grid_bytes_per_block"] =
+      static_cast<double>(memory.grid_bytes) / std::max(1.0, static_cast<double>(memory.blocks));
   json["blocks"] = Json::UInt64(memory.blocks);
   json["active_nodes"] = Json::UInt64(memory.active_nodes);
   json["peak_rss_bytes"] = Json::Int64(peak_rss_bytes());

@@ -160,6 +160,13 @@ int movie_command(const MovieArguments& arguments) {
     if (!points) return fail(points.error());
     include(material, bounds_of(*points));
   }
+  if (!material.upper.allFinite() && !shoot->scene.camera.given) {
+    return fail(
+        {ErrorKind::kUsage,
+         "holds no particles in the first and last of these frames, so nothing says where to look; give "
+         "the scene a camera",
+         arguments.folder});
+  }
   const Camera camera = choose_camera(shoot->scene, shoot->solids, material, arguments);
   const auto solids = draw_solids(shoot->scene, shoot->solids, 12.0 * (camera.eye - camera.target).norm());
   const std::string path =

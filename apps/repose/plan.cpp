@@ -40,13 +40,13 @@ void print_effects(const Scene& scene) {
 
 /// Memory, in the parts that it is made of. What setting up took at its peak has been seen; what steps will add
 /// is the grid's growth. `process` bytes were there before.
-void print_memory(const Simulation& simulation, double process) {
+void print_memory(const Simulation& simulation, double process, double emission) {
   const MemoryUse memory = simulation.memory();
   const auto particles = static_cast<double>(memory.particle_bytes),
              order = static_cast<double>(memory.order_bytes),
              scratch = static_cast<double>(memory.scratch_bytes), grid = static_cast<double>(memory.grid_bytes);
   const double growth = grid;  // material that spreads: room for twice the blocks
-  const double running = process + particles + order + scratch + grid + growth;
+  const double running = process + particles + order + scratch + grid + growth + emission;
   const auto setting_up = static_cast<double>(peak_rss_bytes());
   const auto line = [](const char* what, double bytes, const char* more) {
     std::printf("    %-18s%8.1f MB%s\n", what, 1e-6 * bytes, more);
@@ -61,21 +61,27 @@ void print_memory(const Simulation& simulation, double process) {
   line("  order", order, "");
   line("  threads", scratch, "");
   line("  grid", grid, blocks);
+  if (emission > 0.0) line("  emission", emission, "   what emitters will have made, with room to grow");
   line("  grid's growth", growth, "   allowed for: as much again");
 }
 
 void print_forecast(const Scene& scene, const Simulation& simulation, double process) {
   const auto particles = static_cast<double>(simulation.particles());
   const double dt = simulation.longest_step();
-  const double duration = static_cast<double>(scene.time.frames) / scene.time.frames_per_second;
-  const double steps = duration / dt;
+  const double duration = last_frame_time(scene), emitted = emitted_by(scene, duration);
+  const double steps = duration / dt, mean = particles + 0.5 * emitted;
   std::printf("\nforecast\n");
-  std::printf("  particles           %zu\n", simulation.particles());
+  std::printf("  particles           %zu", simulation.particles());
+  if (emitted > 0.0) {
+    std::printf(" at the start, %.0f%s at the end", particles + emitted,
+                scene.effect<Sinks>().on() ? " less what sinks remove" : "");
+  }
+  std::printf("\n");
   std::printf("  bytes per particle  %zu\n", bytes_per_particle(scene));
-  print_memory(simulation, process);
+  print_memory(simulation, process, 1.125 * emitted * static_cast<double>(bytes_per_particle(scene)));
   std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
   std::printf("  time                about %.0f s on %d thread%s\n",
-              steps * particles * kNanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
+              steps * mean * kNanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
               simulation.threads() == 1 ? "" : "s");
 }
 

@@ -1,6 +1,7 @@
 // Repose: `repose run`: simulates a scene frame by frame and leaves caches, a log and a state to resume from.
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -125,8 +126,8 @@ Result<FrameReport> Run::advance(Progress& progress) {
     tell_warnings(progress);
     if (progress.visible()) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const double ns =
-          1e9 * seconds / (static_cast<double>(steps) * static_cast<double>(simulation_->particles()));
+      const double particles = std::max(1.0, static_cast<double>(simulation_->particles()));
+      const double ns = 1e9 * seconds / (static_cast<double>(steps) * particles);
       char detail[160];
       std::snprintf(detail, sizeof detail,
                     "frame %lld/%lld  step %lld  dt %.3g s (%s)  %zu particles  %zu blocks  %.0f ns",

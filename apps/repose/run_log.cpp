@@ -49,6 +49,23 @@ void add_figures(const Diagnostics& d, double spacing, Json::Value& row) {
   }
 }
 
+/// Masses in kg under the plain names; numbers of particles, which add up exactly, beside them.
+void add_ledger(const LedgerReport& ledger, Json::Value& json) {
+  json["emitted"] = ledger.emitted.mass;
+  json["removed"] = ledger.removed.mass;
+  json["held"] = ledger.held.mass;
+  json["particles"]["initial"] = Json::UInt64(ledger.initial);
+  json["particles"]["emitted"] = Json::UInt64(ledger.emitted.particles);
+  json["particles"]["removed"] = Json::UInt64(ledger.removed.particles);
+  json["particles"]["held"] = Json::UInt64(ledger.held.particles);
+  const auto add = [&json](const char* list, const LedgerReport::Entry& entry) {
+    json[list][entry.name]["kg"] = entry.mass;
+    json[list][entry.name]["particles"] = Json::UInt64(entry.particles);
+  };
+  for (const auto& emitter : ledger.emitters) add("emitters", emitter);
+  for (const auto& sink : ledger.sinks) add("sinks", sink);
+}
+
 std::string hex(std::uint64_t value) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
@@ -137,10 +154,7 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   for (std::size_t k = 0; k < kPhaseNames.size(); ++k)
     row["seconds"][kPhaseNames[k]] = frame.profile.seconds[k];
   add_figures(simulation.diagnose(), log_["scene"]["spacing"].asDouble(), row);
-  // Mass neither enters nor leaves: there is no emitter and no sink.
-  row["ledger"]["emitted"] = 0.0;
-  row["ledger"]["removed"] = 0.0;
-  row["ledger"]["held"] = row["mass"];
+  add_ledger(simulation.ledger(), row["ledger"]);
   row["blocks"] = Json::UInt64(simulation.memory().blocks);
   row["hash"] = hex(simulation.hash());
   return log_["frames"].append(row);

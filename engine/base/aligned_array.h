@@ -39,9 +39,19 @@ class AlignedArray {
     size_ = size;
     clear();
   }
-  /// Makes room for `size` values, which are whatever was there.
-  void reserve_uninitialized(std::size_t size) {
-    if (size > capacity_) return resize(size);
+  /// Makes room for `size` values, which are whatever was there; for `room` of them if memory must be asked
+  /// for.
+  void reserve_uninitialized(std::size_t size, std::size_t room = 0) {
+    if (size > capacity_) resize(room > size ? room : size);
+    size_ = size;
+  }
+  /// The same with the values that were there kept. What grows once grows again: it asks for an eighth more.
+  void resize_keeping(std::size_t size) {
+    if (size > capacity_) {
+      AlignedArray larger(size + size / 8);
+      if (size_ > 0) std::memcpy(larger.data_, data_, size_ * sizeof(T));
+      swap(*this, larger);
+    }
     size_ = size;
   }
   void clear() {
@@ -53,6 +63,7 @@ class AlignedArray {
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
   std::size_t size() const { return size_; }
+  std::size_t capacity() const { return capacity_; }
   std::size_t bytes() const { return data_ != nullptr ? capacity_ * sizeof(T) + kPadding : 0; }
 
   friend void swap(AlignedArray& a, AlignedArray& b) noexcept {

@@ -43,8 +43,10 @@ struct Surroundings {
   double spacing = 0.0;  ///< dx, m
   int flat_axis = -1;    ///< of plane strain, or -1
   Vec3 up{0, 1, 0};
-  Vec3 gravity{0, 0, 0};  ///< m/s^2, at its full value
-  std::string folder;     ///< where relative paths start
+  Vec3 gravity{0, 0, 0};         ///< m/s^2, at its full value
+  double gravity_ramp = 0.0;     ///< s, over which it grows linearly to that
+  Index3 origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice
+  std::string folder;            ///< where relative paths start
   bool allow_outside_paths = false;
   std::function<std::string(const std::string& key)> where;  ///< "file:line:col: key"
 
@@ -75,6 +77,9 @@ struct Assembly {
   const std::vector<Solid>& solids;
   const std::vector<SetDescription>& sets;  ///< in the order of the state's sets
   const Surroundings& surroundings;
+  /// Makes particles that begin during the run ready, as those of bodies were: the channels and the hooks
+  /// `initialize` of all effects. It may be kept beyond the assembly.
+  std::function<void(Newcomers<Real>&)> initialize;
 };
 
 /// The hooks that an effect may fill, each with the default of adding nothing. An effect further has

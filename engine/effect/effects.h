@@ -2,22 +2,27 @@
 // and the compiler go through the list. Node passes run in its order.
 #pragma once
 
+#include <algorithm>
 #include <tuple>
 
 #include "engine/effect/cohesion.h"
 #include "engine/effect/collider.h"
 #include "engine/effect/dilatancy.h"
+#include "engine/effect/emitter.h"
 #include "engine/effect/gravity.h"
 #include "engine/effect/hardening.h"
 #include "engine/effect/moisture.h"
 #include "engine/effect/prestress.h"
 #include "engine/effect/rate_friction.h"
+#include "engine/effect/sink.h"
 #include "engine/effect/variation.h"
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
 
-using Effects = std::tuple<Gravity,           // v += dt g
+using Effects = std::tuple<Emitters,          // particles that begin
+                           Sinks,             // and end
+                           Gravity,           // v += dt g
                            Colliders,         // v* -> v-bar -> v-tilde: last of the node passes
                            Prestress,         // bodies begin under their weight
                            VolumeCorrection,  // around the return map, and around all that follows here
@@ -42,6 +47,18 @@ void for_each_effect_reversed(List& effects, Visit visit) {
     (visit(std::get<kCount - 1 - k>(effects)), ...);
   }
   (std::make_index_sequence<kCount>());
+}
+
+/// Channels of particles that begin take their initial values, then effects may change what they are.
+template <class Real>
+void initialize(const Effects& effects, Newcomers<Real>& newcomers) {
+  for_each_effect(effects, [&](const auto& effect) {
+    for (const Channel& channel : effect.channels(newcomers.description)) {
+      Real* const values = newcomers.set.extra[newcomers.set.extra_index(channel.name)].values.data();
+      std::fill(values + newcomers.first, values + newcomers.last, static_cast<Real>(channel.initial));
+    }
+    if (effect.on()) effect.initialize(newcomers);
+  });
 }
 
 }  // namespace repose

@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written as memory lies");
 
-constexpr char kMagic[16] = "REPOSE STATE 2\n";
+constexpr char kMagic[16] = "REPOSE STATE 3\n";
 
 struct ChunkHead {
   char name[16] = {};
@@ -56,6 +56,7 @@ void for_each_field(AnyHead& head, Visit visit) {
   visit(counters.runs_when_ordered);
   visit(counters.runs_wasted);
   visit(counters.orders);
+  visit(counters.unseen_motion);
 }
 
 std::string bytes_of(const Head& head) {
@@ -133,6 +134,37 @@ Result<void> for_each_array(Set& set, std::size_t k, Visit visit) {
   return result;
 }
 
+/// Visits what is counted, in the order of the file: how many particles each set holds, and the ledger.
+template <class AnyState, class Visit>
+void for_each_count(AnyState& state, Visit visit) {
+  for (auto& set : state.sets) visit(set.count);
+  visit(state.ledger.initial);
+  visit(state.ledger.next_id);
+  for (auto& count : state.ledger.emitted) visit(count);
+  for (auto& count : state.ledger.removed) visit(count);
+}
+
+template <class Real>
+std::vector<std::uint64_t> counts_of(const State<Real>& state) {
+  std::vector<std::uint64_t> counts;
+  for_each_count(state, [&counts](std::uint64_t count) { counts.push_back(count); });
+  return counts;
+}
+
+/// Makes room for as many particles as the file holds: another number than the scene starts with, where they
+/// begin and end.
+template <class Real>
+Result<void> read_counts(ChunkReader& reader, State<Real>& state) {
+  std::vector<std::uint64_t> counts = counts_of(state);
+  if (auto read = reader.read("counts", counts.data(), counts.size() * sizeof counts[0]); !read) return read;
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    if (counts[k] != state.sets[k].count) state.sets[k].allocate(counts[k]);
+  }
+  const std::uint64_t* next = counts.data();
+  for_each_count(state, [&next](auto& count) { count = *next++; });
+  return {};
+}
+
 Result<Head> read_head(ChunkReader& reader) {
   Head head;
   std::string bytes = bytes_of(head);  // for its size
@@ -168,6 +200,10 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   if (auto written = write_chunk(*file, "blocks", owners.data(), owners.size() * sizeof(Index3)); !written) {
     return written;
   }
+  const std::vector<std::uint64_t> counts = counts_of(state);
+  if (auto written = write_chunk(*file, "counts", counts.data(), counts.size() * sizeof counts[0]); !written) {
+    return written;
+  }
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     auto written =
         for_each_array(state.sets[k], k, [&](const std::string& name, const void* data, std::size_t bytes) {
@@ -191,11 +227,12 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
         path};
   }
   if (head->precision_bytes != sizeof(Real) || head->sets != static_cast<std::int32_t>(state.sets.size()) ||
-      head->particles != state.particles()) {
+      (head->particles != state.particles() && !state.ledger.open())) {
     return Error{ErrorKind::kBadScene, "holds other particles, or another precision, than this scene", path};
   }
   std::vector<Index3> owners(head->owners);
   if (auto read = reader->read("blocks", owners.data(), owners.size() * sizeof(Index3)); !read) return read;
+  if (auto read = read_counts(*reader, state); !read) return read;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     state.sets[k].begin.resize(head->owners + 1);
     auto read = for_each_array(state.sets[k], k, [&](const std::string& name, void* data, std::size_t bytes) {

@@ -65,30 +65,10 @@ Result<void> prepare(Effects& effects, const Surroundings& surroundings) {
   return ready;
 }
 
-template <class Real>
-void add_channels(const Effects& effects, const SetDescription& description, ParticleSet<Real>& set) {
-  for_each_effect(effects, [&](const auto& effect) {
-    for (const Channel& channel : effect.channels(description)) set.extra.push_back({channel.name, {}});
-  });
-}
-
-/// Channels of particles that begin take their initial values, then effects may change what they are.
-template <class Real>
-void initialize(const Effects& effects, Newcomers<Real>& newcomers) {
-  for_each_effect(effects, [&](const auto& effect) {
-    for (const Channel& channel : effect.channels(newcomers.description)) {
-      Real* const values = newcomers.set.extra[newcomers.set.extra_index(channel.name)].values.data();
-      std::fill(values + newcomers.first, values + newcomers.last, static_cast<Real>(channel.initial));
-    }
-    if (effect.on()) effect.initialize(newcomers);
-  });
-}
-
 /// Fills a set with the seeds of a body: rest, but for the body's motion.
 template <class Real>
 void fill_set(const Scene& scene, const BodyDescription& body, const Vec3& center, Seeds seeds,
               std::uint32_t first_id, ParticleSet<Real>& set, std::vector<Index3>& cells) {
-  set.name = body.name;
   set.particle_volume = seeds.particle_volume;
   set.particle_mass = seeds.particle_volume * material_of(scene, set.material).elasticity().density;
   set.allocate(seeds.cell.size());
@@ -129,15 +109,19 @@ std::string bytes_text(double bytes) {
   return text;
 }
 
-/// Ids have 32 bits.
-constexpr double kMostParticles = 4.0e9;
-
-/// Refuses, before anything is allocated, a body that would not fit.
-Result<void> check_memory(const Scene& scene, double particles, double limit) {
+/// Refuses, before anything is allocated, bodies that would not fit, or what emitters will have made by the
+/// scene's last frame. Sinks make room, nobody knows how much: where there are some, emitted particles count
+/// only as ids.
+Result<void> check_memory(const Scene& scene, double seeded, double limit) {
+  const auto per_particle = static_cast<double>(bytes_per_particle(scene));
+  const double emitted = emitted_by(scene, last_frame_time(scene)), particles = seeded + emitted;
+  const double held = seeded + (scene.effect<Sinks>().on() ? 0.0 : emitted);
+  // Seeds take 24 bytes while they last; sets that grow take an eighth more than they need.
   const double bytes =
-      particles * static_cast<double>(bytes_per_particle(scene) + 24);  // 24: seeds, while they last
-  if (bytes <= limit && particles < kMostParticles) return {};
-  const double allowed = std::min(limit / bytes, kMostParticles / particles);
+      std::max(seeded * (per_particle + 24), held > seeded ? 1.125 * held * per_particle : 0.0);
+  constexpr auto kMost = static_cast<double>(kMostIds);
+  if (bytes <= limit && particles < kMost) return {};
+  const double allowed = std::min(limit / bytes, kMost / particles);
   char count[64], spacing[64];
   std::snprintf(count, sizeof count, "%.3g particles", particles);
   std::snprintf(spacing, sizeof spacing, "; a spacing of %.3g m or more fits",
@@ -154,6 +138,10 @@ Surroundings surroundings_of(const Scene& scene, const CompileOptions& options) 
   around.flat_axis = scene.grid.plane_strain.value_or(-1);
   around.up = scene.up == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
   around.gravity = scene.effect<Gravity>().acceleration;
+  around.gravity_ramp = scene.effect<Gravity>().ramp;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    around.origin_cells[axis] = static_cast<std::int32_t>(scene.grid.origin_cells[axis]);
+  }
   around.folder = scene.folder;
   around.allow_outside_paths = options.allow_outside_paths;
   around.where = [places = scene.places](const std::string& key) {
@@ -175,6 +163,40 @@ struct Compilation {
 
 SetDescription set_description(const Scene& scene, const std::string& name, int material) {
   return {name, material_of(scene, material).name, material_of(scene, material).parameters};
+}
+
+template <class Real>
+ParticleSet<Real> empty_set(Compilation<Real>& compilation, const std::string& name,
+                            const std::string& material) {
+  const Scene& scene = compilation.scene;
+  ParticleSet<Real> set;
+  set.name = name;
+  set.material = material_index(scene, material);
+  set.keeps_affine = transfer_choice(scene).keeps_affine();
+  compilation.sets.push_back(set_description(scene, name, set.material));
+  for_each_effect(compilation.effects, [&](const auto& effect) {
+    for (const Channel& channel : effect.channels(compilation.sets.back()))
+      set.extra.push_back({channel.name, {}});
+  });
+  return set;
+}
+
+/// The sets that emitters will fill, and what is counted of them.
+template <class Real>
+void add_emitters(Compilation<Real>& compilation, State<Real>& state) {
+  const Scene& scene = compilation.scene;
+  state.ledger.initial = state.ledger.next_id = state.particles();
+  for (const Emitter& emitter : scene.effect<Emitters>().list) {
+    ParticleSet<Real> set = empty_set(compilation, emitter.name, emitter.material);
+    const Flow flow = flow_of(emitter, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
+    set.particle_volume = flow.particle_volume;
+    set.particle_mass = flow.particle_volume * material_of(scene, set.material).elasticity().density;
+    state.sets.push_back(std::move(set));
+    state.ledger.emitted.push_back(0);
+  }
+  const std::size_t sinks = scene.effect<Sinks>().list.size();
+  state.ledger.removed.assign(sinks * state.sets.size(), 0);
+  if (sinks > 0) state.counters.unseen_motion = scene.grid.spacing;  // they look before the first step
 }
 
 template <class Real>
@@ -204,12 +226,8 @@ Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
     auto seeds = seed_shape(*shapes[k], seeding);
     if (!seeds) return Error{seeds.error().kind, seeds.error().text(), scene.where("bodies." + body.name)};
     const Bounds bounds = shapes[k]->bounds();
-    ParticleSet<Real> set;
-    set.material = material_index(scene, body.material);
-    set.keeps_affine = transfer_choice(scene).keeps_affine();
-    compilation.sets.push_back(set_description(scene, body.name, set.material));
+    ParticleSet<Real> set = empty_set(compilation, body.name, body.material);
     const SetDescription& description = compilation.sets.back();
-    add_channels(compilation.effects, description, set);
     fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), std::move(*seeds), next_id, set,
              cells.emplace_back());
     const auto& at = cells.back();  // in cells of the lattice
@@ -229,6 +247,8 @@ Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
     state.counters.max_gradient = std::max(state.counters.max_gradient, spin);
     state.sets.push_back(std::move(set));
   }
+  add_emitters(compilation, state);
+  cells.resize(state.sets.size());
   place_in_blocks(state, std::move(cells), transfer_choice(scene).ownership());
   return {};
 }
@@ -277,7 +297,9 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
   }
 
   // Nodes.
-  Assembly<Real> assembly{plan, state, solids, compilation.sets, compilation.surroundings};
+  Assembly<Real> assembly{plan, state, solids, compilation.sets, compilation.surroundings, {}};
+  assembly.initialize = [effects = std::make_shared<const Effects>(compilation.effects)](
+                            Newcomers<Real>& newcomers) { initialize(*effects, newcomers); };
   plan.nodes.push_back(normalize_pass(plan));  // v* = p/m
   if (plan.transfer.figures().keeps_velocity) {
     plan.order.push_back(before_forces_room_pass<Real>());
@@ -357,13 +379,28 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
   std::vector<EffectStatus> list;
   for_each_effect(scene.effects, [&](const auto& effect) {
     std::size_t channels = 0;  // of the set that has most
-    for (const BodyDescription& body : scene.bodies) {
-      const SetDescription set = set_description(scene, body.name, material_index(scene, body.material));
+    const auto count = [&](const std::string& name, const std::string& material) {
+      const SetDescription set = set_description(scene, name, material_index(scene, material));
       channels = std::max(channels, effect.channels(set).size());
-    }
+    };
+    for (const BodyDescription& body : scene.bodies) count(body.name, body.material);
+    for (const Emitter& emitter : scene.effect<Emitters>().list) count(emitter.name, emitter.material);
     list.push_back({effect.kName, effect.on(), effect.why(), channels * real});
   });
   return list;
+}
+
+double last_frame_time(const Scene& scene) {
+  return static_cast<double>(scene.time.frames) / scene.time.frames_per_second;
+}
+
+double emitted_by(const Scene& scene, double time) {
+  double particles = 0.0;
+  for (const Emitter& emitter : scene.effect<Emitters>().list) {
+    const Flow flow = flow_of(emitter, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
+    particles += static_cast<double>(flow.count(time));
+  }
+  return particles;
 }
 
 std::size_t bytes_per_particle(const Scene& scene) {

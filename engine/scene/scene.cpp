@@ -239,7 +239,7 @@ void describe_materials(Fields& fields, Scene& scene) {
 }
 
 void describe_bodies(Fields& fields, Scene& scene) {
-  fields.list("bodies", true, "solids filled with particles", [&](Fields& f) {
+  fields.list("bodies", false, "solids filled with particles at the start", [&](Fields& f) {
     BodyDescription body;
     describe_body(f, body);
     f.check(!is_named(scene.bodies, body.name), "name",
@@ -289,7 +289,17 @@ void describe(Fields& fields, Scene& scene) {
   describe_materials(fields, scene);
   describe_bodies(fields, scene);
   turn_gravity(scene);
+  for (const MaterialDescription& material : scene.materials) {
+    scene.effect<Emitters>().materials.push_back(material.name);
+  }
   for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields); });
+  for (const Emitter& emitter : scene.effect<Emitters>().list) {
+    fields.check(
+        !is_named(scene.bodies, emitter.name), "emitters",
+        "\"" + emitter.name + "\" is the name of a body; choose another, for both are sets of particles");
+  }
+  fields.check(!scene.bodies.empty() || !scene.effect<Emitters>().list.empty(), "bodies",
+               "must hold at least one object, unless there is one in \"emitters\"");
   fields.check(
       !scene.grid.plane_strain || scene.effect<Gravity>().acceleration[*scene.grid.plane_strain] == 0.0,
       "gravity", "acceleration must be zero along the flat axis (plane_strain)");

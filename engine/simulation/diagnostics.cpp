@@ -107,11 +107,41 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
   });
   Diagnostics sums = empty_sums();
   for (const Diagnostics& block : blocks) merge(block, sums);
+  if (sums.particles == 0) sums.lower = sums.upper = Vec3::Zero();
   if (sums.mass > 0.0) sums.center_of_mass /= sums.mass;
   sums.potential_energy = -sums.mass * scene.effect<Gravity>().acceleration.dot(sums.center_of_mass);
   return sums;
 }
 
+template <class Real>
+LedgerReport ledger_report(const Scene& scene, const State<Real>& state) {
+  LedgerReport report;
+  report.initial = state.ledger.initial;
+  const std::size_t sets = state.sets.size();
+  const auto add = [&state](LedgerReport::Entry& entry, std::size_t set, std::uint64_t particles) {
+    entry.particles += particles;
+    entry.mass += static_cast<double>(particles) * state.sets[set].particle_mass;
+  };
+  const std::vector<Emitter>& emitters = scene.effect<Emitters>().list;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const std::size_t set = sets - emitters.size() + e;
+    add(report.emitters.emplace_back(LedgerReport::Entry{emitters[e].name}), set, state.ledger.emitted[e]);
+    add(report.emitted, set, state.ledger.emitted[e]);
+  }
+  const std::vector<Sink>& sinks = scene.effect<Sinks>().list;
+  for (std::size_t s = 0; s < sinks.size(); ++s) {
+    LedgerReport::Entry& sink = report.sinks.emplace_back(LedgerReport::Entry{sinks[s].name});
+    for (std::size_t k = 0; k < sets; ++k) {
+      add(sink, k, state.ledger.removed[s * sets + k]);
+      add(report.removed, k, state.ledger.removed[s * sets + k]);
+    }
+  }
+  for (std::size_t k = 0; k < sets; ++k) add(report.held, k, state.sets[k].count);
+  return report;
+}
+
+template LedgerReport ledger_report(const Scene&, const State<float>&);
+template LedgerReport ledger_report(const Scene&, const State<double>&);
 template Diagnostics diagnose(const Scene&, const std::vector<Solid>&, const State<float>&, Threads&);
 template Diagnostics diagnose(const Scene&, const std::vector<Solid>&, const State<double>&, Threads&);
 

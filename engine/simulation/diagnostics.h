@@ -25,7 +25,7 @@ struct Diagnostics {
   Vec3 momentum{0, 0, 0};          ///< kg m/s
   Vec3 angular_momentum{0, 0, 0};  ///< about the scene's origin, with the affine part, kg m^2/s
   Vec3 center_of_mass{0, 0, 0};    ///< m
-  Vec3 lower{0, 0, 0}, upper{0, 0, 0};  ///< bounds of the particles, m
+  Vec3 lower{0, 0, 0}, upper{0, 0, 0};  ///< bounds of the particles, m; zero if there are none
   double max_speed = 0.0;               ///< m/s
   double deepest = 0.0;                 ///< largest depth of a particle inside a solid, m; 0 if none is inside
   std::string deepest_solid;            ///< which solid
@@ -41,6 +41,18 @@ struct MemoryUse {
   std::uint64_t active_nodes = 0;
 };
 
+/// What has begun and what has ended so far. In particles: initial + emitted - removed = held, exactly.
+struct LedgerReport {
+  struct Entry {
+    std::string name;
+    std::uint64_t particles = 0;
+    double mass = 0.0;  ///< kg
+  };
+  std::uint64_t initial = 0;
+  Entry emitted, removed, held;
+  std::vector<Entry> emitters, sinks;  ///< by name
+};
+
 /// How far a particle of a block can be from the block's middle, m.
 inline double block_radius(double spacing) {
   return 0.5 * std::sqrt(3.0) * kArenaSide * spacing;
@@ -49,5 +61,8 @@ inline double block_radius(double spacing) {
 template <class Real>
 Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state,
                      Threads& threads);
+
+template <class Real>
+LedgerReport ledger_report(const Scene& scene, const State<Real>& state);
 
 }  // namespace repose

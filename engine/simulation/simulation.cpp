@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <new>
 #include <thread>
 
 #include "engine/io/checkpoint.h"
@@ -49,11 +50,9 @@ class SimulationOf final : public Simulation {
   }
 
   Result<StepReport> step() override {
-    const StepReport report = stepper_.step(state_, std::numeric_limits<double>::infinity());
-    offender_ = report.offender;
-    if (!report.accepted)
-      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
-    state_.counters.time += report.dt;
+    auto report = try_step(std::numeric_limits<double>::infinity());
+    if (!report) return report;
+    state_.counters.time += report->dt;
     watch_speed();
     return report;
   }
@@ -66,6 +65,7 @@ class SimulationOf final : public Simulation {
     return make_points(scene_, state_, *stepper_.plan().kernels, wanted);
   }
   Diagnostics diagnose() override { return repose::diagnose(scene_, solids_, state_, stepper_.threads()); }
+  LedgerReport ledger() const override { return ledger_report(scene_, state_); }
   std::uint64_t hash() const override { return state_hash(state_); }
   MemoryUse memory() const override {
     return {state_.particle_bytes(), stepper_.bytes(),   stepper_.scratch_bytes(),
@@ -95,6 +95,26 @@ class SimulationOf final : public Simulation {
   }
 
  private:
+  /// Only what emitters make can need memory that nobody has counted before the run.
+  template <class Work>
+  auto unless_memory_ends(const Work& work) -> decltype(work()) {
+    try {
+      return work();
+    } catch (const std::bad_alloc&) {
+      return Error{ErrorKind::kMemory, "memory ran out; a coarser grid.spacing needs less", scene_.name};
+    }
+  }
+
+  Result<StepReport> try_step(double remaining) {
+    return unless_memory_ends([&]() -> Result<StepReport> {
+      StepReport report = stepper_.step(state_, remaining);
+      offender_ = report.offender;
+      if (report.error) return *report.error;
+      if (report.accepted) return report;
+      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+    });
+  }
+
   void watch_speed() {
     if (warned_of_speed_) return;
     if (auto warning = speed_warning(stepper_.plan(), state_)) {
@@ -125,11 +145,10 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   const double length = 1.0 / fps;
   while (counters.time_in_frame < length) {
     const double remaining = length - counters.time_in_frame;
-    const StepReport report = stepper_.step(state_, remaining);
+    const auto tried = try_step(remaining);
+    if (!tried) return tried.error();
+    const StepReport& report = *tried;
     frame.redone += report.redone;
-    offender_ = report.offender;
-    if (!report.accepted)
-      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
     // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
     const bool last = report.dt >= remaining * (1.0 - 1e-9);
     counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;
@@ -145,6 +164,8 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     counters.time_in_frame = 0.0;
     ++counters.frame;
     counters.time = static_cast<double>(counters.frame) / fps;
+    if (auto ended = unless_memory_ends([&] { return stepper_.end_frame(state_); }); !ended)
+      return ended.error();
   }
   frame.frame = counters.frame;
   frame.time = counters.time;
@@ -162,6 +183,7 @@ std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes(
   const auto add = [&list](const std::string& phase, const auto& passes) {
     for (const auto& pass : passes) list.emplace_back(phase, pass.description);
   };
+  add("events", plan.events);
   add("order", plan.order);
   for (std::size_t k = 0; k < plan.scatter.size(); ++k) add("scatter " + state_.sets[k].name, plan.scatter[k]);
   add("nodes", plan.nodes);

@@ -48,11 +48,12 @@ class Simulation {
   static Result<std::unique_ptr<Simulation>> create(const Scene& scene, const SimulationOptions& options = {});
   virtual ~Simulation() = default;
 
-  /// One step of what the limits allow, ending on no frame. Error 70 as advance_frame.
+  /// One step of what the limits allow, ending on no frame. Errors as advance_frame.
   virtual Result<StepReport> step() = 0;
 
   /// Steps to the end of the next frame. Error 70 when the physics gives out: the message names the particle
   /// and what would happen to it; offender() tells more. The state is then that of the last accepted step.
+  /// Error 78 when emitters have used up memory or ids; the state is then of no more use.
   virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
 
   virtual const Counters& counters() const = 0;
@@ -60,6 +61,7 @@ class Simulation {
   /// All particles in the order of their ids, with what is wanted of them (engine/simulation/points.h).
   virtual PointCloud points(const PointsWanted& wanted = {}) const = 0;
   virtual Diagnostics diagnose() = 0;
+  virtual LedgerReport ledger() const = 0;
   virtual std::uint64_t hash() const = 0;
   virtual MemoryUse memory() const = 0;
   virtual const Profile& profile() const = 0;

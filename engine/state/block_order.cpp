@@ -322,10 +322,12 @@ bool BlockOrder<Real>::order(State<Real>& state, Threads& threads, const Ownersh
   for (std::size_t k = 0; k < sets; ++k) {
     Buffers& buffers = buffers_[k];
     buffers.old.resize(old_owners);
-    buffers.cell.reserve_uninitialized(state.sets[k].count);
-    buffers.spare.reserve_uninitialized(state.sets[k].count);
-    buffers.permutation.reserve_uninitialized(state.sets[k].count);
-    buffers.arrivals.reserve_uninitialized(state.sets[k].count / 8);
+    // As much room as the channels have: a channel and its spare change places.
+    const std::size_t count = state.sets[k].count, room = state.sets[k].id.capacity();
+    buffers.cell.reserve_uninitialized(count, room);
+    buffers.spare.reserve_uninitialized(count, room);
+    buffers.permutation.reserve_uninitialized(count, room);
+    buffers.arrivals.reserve_uninitialized(count / 8, room / 8);
     threads.for_each(old_owners, [&](std::size_t owner) { classify(state.sets[k], owner, locator, buffers); });
   }
   const bool new_grid = update_grid(state);

@@ -2,25 +2,11 @@
 #include <algorithm>
 
 #include "engine/state/block_order.h"
+#include "engine/state/particle_edit.h"
 
 namespace repose {
 
 namespace {
-
-/// Turns cells into the blocks that own them, in place, and offsets in a cell into offsets in its block.
-template <class Real>
-void find_blocks(ParticleSet<Real>& set, const Topology& topology, const Locator<Real>& locator,
-                 std::vector<Index3>& cells) {
-  for (std::size_t p = 0; p < set.count; ++p) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      // Mostly the cell's block; the one before where the base lies across the face.
-      const std::int32_t cell = cells[p][axis];
-      cells[p][axis] = locator.block(cell, set.position[axis][p]);
-      set.position[axis][p] += static_cast<Real>(cell - cells[p][axis] * kBlockSide);
-    }
-    cells[p] = topology.wrap(cells[p]);
-  }
-}
 
 /// Moves particles to the ranges of their owners. `blocks` is gone before the channels need room.
 template <class Real>
@@ -49,10 +35,9 @@ void sort_by_owner(ParticleSet<Real>& set, const BlockGrid& grid, std::vector<In
 
 template <class Real>
 void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells, const Ownership& ownership) {
-  const Locator<Real> locator(ownership);
   std::vector<Index3> owners;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    find_blocks(state.sets[k], state.topology, locator, cells[k]);
+    find_blocks(state.sets[k], state.topology, ownership, cells[k]);
     for (const Index3& block : cells[k]) {
       if (owners.empty() || owners.back() != block) owners.push_back(block);
     }

@@ -28,6 +28,19 @@ struct Counters {
   std::int64_t runs_when_ordered = -1;  ///< runs in the first step after the last order; -1: not yet counted
   std::int64_t runs_wasted = 0;         ///< sum over the steps since of the runs beyond that
   std::int64_t orders = 0;
+  double unseen_motion = 0.0;  ///< m, way of the fastest particle since sinks last looked; 0 without sinks
+};
+
+/// What has begun and what has ended, in particles; saved with the state. Ids are never used twice, so they do
+/// not stay without gaps.
+struct Ledger {
+  std::uint64_t initial = 0;           ///< of the bodies
+  std::uint64_t next_id = 0;           ///< also how many ids have been given
+  std::vector<std::uint64_t> emitted;  ///< per emitter of the scene
+  std::vector<std::uint64_t> removed;  ///< per sink of the scene and set: [sink * sets + set]
+
+  /// Whether particles may begin or end at all.
+  bool open() const { return !emitted.empty() || !removed.empty(); }
 };
 
 template <class Real>
@@ -37,6 +50,7 @@ struct State {
   Topology topology;
   std::vector<ParticleSet<Real>> sets;
   Counters counters;
+  Ledger ledger;
 
   BlockGrid grid;
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar

@@ -31,6 +31,8 @@ Result<void> follow_all(const Passes& passes, std::set<std::string>& known) {
 
 template <class Real>
 Result<void> StepPlan<Real>::validate(const State<Real>& state) const {
+  std::set<std::string> at_events = kInitial;
+  if (auto result = follow_all(events, at_events); !result) return result;
   std::set<std::string> after_order = kInitial;
   if (auto result = follow_all(order, after_order); !result) return result;
   const auto with_channels = [&state](std::set<std::string> known, std::size_t set) {

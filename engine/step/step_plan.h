@@ -10,6 +10,7 @@
 
 #include "engine/base/result.h"
 #include "engine/state/ownership.h"
+#include "engine/state/particle_edit.h"
 #include "engine/state/state.h"
 #include "kernels/pass/pass.h"
 
@@ -93,6 +94,21 @@ struct OrderPass {
   std::function<void(State<Real>&)> run;
 };
 
+/// When events are asked for.
+enum class Moment {
+  kBeforeStep,
+  kEndOfFrame,  ///< before anything is written of the frame: nothing that is due by its time may be left over
+};
+
+/// Begins and ends particles. Asked before each step; an edit that is not empty is carried out at once, and an
+/// order event follows.
+template <class Real>
+struct EventPass {
+  PassDescription description;
+  std::function<bool(const State<Real>&, Moment)> due;              ///< costs nothing per particle
+  std::function<void(State<Real>&, ParticleEdit<Real>& edit)> run;  ///< keeps the ledger
+};
+
 /// What bounds the step (see time_step.h); per set, in the order of the state's sets.
 struct StepLimits {
   double max_step = 1.0;  ///< s
@@ -139,6 +155,7 @@ struct StepPlan {
   Real least_mass = 0;  ///< kg; a node below it is empty
   Advection advection = Advection::kAfterFriction;
 
+  std::vector<EventPass<Real>> events;
   std::vector<OrderPass<Real>> order;
   std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set
   std::vector<NodePass<Real>> nodes;

@@ -38,9 +38,41 @@ void Stepper<Real>::order_if_due(State<Real>& state) {
   topology_known_ = true;
 }
 
+/// Returns whether particles have begun or ended.
+template <class Real>
+Result<bool> Stepper<Real>::carry_out_events(State<Real>& state, Moment moment) {
+  if (plan_.events.empty()) return false;
+  const PhaseTimer timer(profile_, Phase::kOrder);
+  std::optional<ParticleEdit<Real>> edit;
+  for (const auto& pass : plan_.events) {
+    if (!pass.due(state, moment)) continue;
+    if (!edit) edit.emplace(state, threads_);
+    pass.run(state, *edit);
+  }
+  if (!edit || edit->empty()) return false;
+  const auto new_blocks = apply_edit(std::move(*edit), state, plan_.transfer.ownership());
+  if (!new_blocks) return new_blocks.error();
+  if (*new_blocks) topology_known_ = false;
+  return true;
+}
+
+template <class Real>
+Result<void> Stepper<Real>::end_frame(State<Real>& state) {
+  const CleanFloatingPoint clean;
+  const auto changed = carry_out_events(state, Moment::kEndOfFrame);
+  if (!changed) return changed.error();
+  if (*changed) order_if_due(state);
+  return {};
+}
+
 template <class Real>
 StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   const CleanFloatingPoint clean;
+  if (auto events = carry_out_events(state, Moment::kBeforeStep); !events) {
+    StepReport report;
+    report.error = events.error();
+    return report;
+  }
   order_if_due(state);
   const StepSize size = choose_step(plan_.limits, plan_.transfer, state.spacing, state.counters, remaining);
   StepReport report;
@@ -199,7 +231,7 @@ Motion<Real> Stepper<Real>::gather_block(State<Real>& state, std::size_t owner, 
 }
 
 template <class Real>
-void Stepper<Real>::finish(State<Real>& state, Real) {
+void Stepper<Real>::finish(State<Real>& state, Real dt) {
   Counters& counters = state.counters;
   Motion<Real> all;
   for (const Motion<Real>& motion : motion_) {  // largest and least: the order of blocks does not matter
@@ -219,6 +251,7 @@ void Stepper<Real>::finish(State<Real>& state, Real) {
   for (const std::size_t n : runs_) runs += static_cast<std::int64_t>(n);
   if (counters.runs_when_ordered < 0) counters.runs_when_ordered = runs;
   counters.runs_wasted += std::max<std::int64_t>(0, runs - counters.runs_when_ordered);
+  if (!plan_.events.empty()) counters.unseen_motion += counters.max_speed * static_cast<double>(dt);
   ++counters.step;
 }
 

@@ -34,6 +34,7 @@ struct StepReport {
   Limit limit = Limit::kMaxStep;
   int redone = 0;                    ///< how often it was refused
   std::optional<Offender> offender;  ///< of the last refusal
+  std::optional<Error> error;        ///< an event could not be carried out; no step was then tried
 };
 
 template <class Real>
@@ -55,8 +56,12 @@ class Stepper {
   std::size_t scratch_bytes() const;
   /// Brings the order up to date, if it is due; a step does so by itself.
   void order_if_due(State<Real>& state);
+  /// Carries out the events that are due, then brings the order up to date if there were any; a step does the
+  /// first by itself. Error 78: no ids are left.
+  Result<void> end_frame(State<Real>& state);
 
  private:
+  Result<bool> carry_out_events(State<Real>& state, Moment moment);
   void scatter(State<Real>& state, Real dt);
   void scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt);
   void update_nodes(State<Real>& state, Real dt);

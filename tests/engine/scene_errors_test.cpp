@@ -216,7 +216,40 @@ TEST(SceneErrors, Missing_StandsAtTheObject) {
 
 TEST(SceneErrors, NoBody_Refused) {
   EXPECT_EQ(override_errors("bodies=[]"),
-            "--set bodies=[]: bodies: found a list; expected a list of at least one object");
+            "--set bodies=[]: bodies: must hold at least one object, unless there is one in \"emitters\"");
+}
+
+/// A scene of one emitter and one sink.
+std::string flowing(const std::string& emitter, const std::string& sink = "") {
+  return R"json({"repose": 1, "name": "flowing", "grid": {"spacing": 0.1},
+"materials": {"sand": {"type": "drucker_prager"}, "gel": {"type": "elastic"}},
+"emitters": [)json" +
+         emitter + "],\n\"sinks\": [" + sink + "]}";
+}
+
+TEST(SceneErrors, EmittersAndSinks_SayWhatWouldBeRight) {
+  const std::string disc = R"("type": "disc", "center": [0, 0, 0], "radius": 1, "speed": 1)";
+  EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", )" + disc + "}")), "");
+  EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "jel", )" + disc + "}")),
+            "s.json:3:40: emitters[0].material: no material \"jel\"; choose among \"gel\", \"sand\"");
+  EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", "start": 2, "end": 1, )" + disc + "}")),
+            "s.json:3:66: emitters[0].end: must be after \"start\", or 0");
+  EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", "normal": [0, 0, 0], )" + disc + "}")),
+            "s.json:3:57: emitters[0].normal: must not be zero, for example [0, -1, 0]");
+  EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", "speed": 1, "type": "volume",
+"shape": {"type": "plane"}, "rate": 1})")),
+            "s.json:3:47: emitters[0].speed: unknown key for type \"volume\"; did you mean \"seed\"?");
+  EXPECT_EQ(errors(flowing(
+                R"({"name": "a", "material": "gel", )" + disc + "}",
+                R"({"name": "b", "shape": {"type": "plane"}}, {"name": "b", "shape": {"type": "plane"}})")),
+            "s.json:4:63: sinks[1].name: \"b\" is taken by another sink; choose another");
+}
+
+TEST(SceneErrors, EmitterNamedLikeABody_Refused) {
+  const std::string refusal = override_errors(
+      R"(emitters=[{"name": "heap", "material": "sand", "type": "disc", "center": [0, 0, 0], "radius": 1, "speed": 1}])");
+  EXPECT_NE(refusal.find(": emitters: \"heap\" is the name of a body; choose another"), std::string::npos)
+      << refusal;
 }
 
 TEST(SceneErrors, UnknownMaterial_NearestNamed) {

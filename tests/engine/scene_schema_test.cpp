@@ -47,15 +47,14 @@ void collect_keys(const Json::Value& schema, std::set<std::string>& keys) {
 TEST(SceneSchema, Root_ListsEveryKeyAndNoOther) {
   const Json::Value schema = parsed_schema();
   EXPECT_EQ(schema["$schema"].asString(), "https://json-schema.org/draft/2020-12/schema");
-  EXPECT_EQ(
-      schema["properties"].getMemberNames(),
-      (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "gravity", "grid", "materials",
-                                "name", "output", "parameters", "repose", "time", "up", "volume_correction"}));
+  EXPECT_EQ(schema["properties"].getMemberNames(),
+            (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "emitters", "gravity", "grid",
+                                      "materials", "name", "output", "parameters", "prestress", "repose",
+                                      "sinks", "time", "up", "volume_correction", "wetting"}));
   EXPECT_FALSE(schema["additionalProperties"].asBool());
   std::set<std::string> required;
   for (const Json::Value& key : schema["required"]) required.insert(key.asString());
-  EXPECT_EQ(required, (std::set<std::string>{"repose", "name", "grid", "materials", "bodies"}));
-  EXPECT_EQ(schema["properties"]["bodies"]["minItems"].asInt(), 1);
+  EXPECT_EQ(required, (std::set<std::string>{"repose", "name", "grid", "materials"}));
 }
 
 TEST(SceneSchema, Defaults_AreThoseOfTheStructs) {
@@ -110,6 +109,10 @@ TEST(SceneSchema, Forms_AreClosedAndShareCommonKeys) {
   EXPECT_FALSE(sphere["properties"].isMember("upper"));
   EXPECT_FALSE(sphere["additionalProperties"].asBool());
   EXPECT_TRUE(form(shape, "box")["properties"].isMember("upper"));
+  const Json::Value& emitter = property(schema, "emitters")["items"];
+  EXPECT_EQ(emitter["oneOf"].size(), 3u);
+  EXPECT_TRUE(form(emitter, "disc")["properties"].isMember("speed"));
+  EXPECT_TRUE(form(emitter, "volume")["properties"].isMember("rate"));
 }
 
 TEST(SceneSchema, ListOfNames_IsClosedAndHasNoneTwice) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "engine/scene/compiler.h"
 #include "engine/scene/reader.h"
 
@@ -84,7 +86,7 @@ TEST(StepPlan, OrderPasses_ProvideForAll) {
 
 /// What a scene compiles to, as lists of names.
 struct Names {
-  std::vector<std::string> order, nodes;
+  std::vector<std::string> events, order, nodes;
   std::vector<std::vector<std::string>> scatter, gather;
   std::vector<std::vector<std::string>> channels;  ///< per set, beyond those that every particle has
   std::size_t bytes = 0;
@@ -107,7 +109,12 @@ Names compile(const std::vector<std::string>& overrides) {
   EXPECT_TRUE(scene) << (scene ? "" : scene.error().text());
   const auto compiled = compile_scene<float>(*scene, {});
   EXPECT_TRUE(compiled) << (compiled ? "" : compiled.error().text());
-  Names names{names_of(compiled->plan.order), names_of(compiled->plan.nodes), {}, {}, {},
+  Names names{names_of(compiled->plan.events),
+              names_of(compiled->plan.order),
+              names_of(compiled->plan.nodes),
+              {},
+              {},
+              {},
               bytes_per_particle(*scene)};
   for (const auto& passes : compiled->plan.scatter) names.scatter.push_back(names_of(passes));
   for (const auto& passes : compiled->plan.gather) names.gather.push_back(names_of(passes));
@@ -124,6 +131,7 @@ constexpr const char* kTwoBodies = R"json(bodies=[
 
 TEST(CompiledPlan, SceneThatNamesNothing_IsTheCore) {
   const Names names = compile({});
+  EXPECT_THAT(names.events, IsEmpty());
   EXPECT_THAT(names.order, IsEmpty());
   EXPECT_THAT(names.scatter, ElementsAre(ElementsAre("stress", "scatter")));
   EXPECT_THAT(names.nodes, ElementsAre("node velocity"));
@@ -157,6 +165,30 @@ TEST(CompiledPlan, VolumeCorrection_IsOneChannelAndTwoPasses) {
   EXPECT_EQ(with.nodes, without.nodes);
 }
 
+constexpr const char* kSpout = R"json(emitters=[
+  {"name": "spout", "material": "sand", "type": "disc", "center": [0, 2, 0], "radius": 0.3, "speed": 1}])json";
+
+TEST(CompiledPlan, EmitterAndSink_AreOneEventEachAndNoBytes) {
+  const Names without = compile({});
+  const Names sink = compile({R"json(sinks=[{"name": "drain", "shape": {"type": "plane"}}])json"});
+  EXPECT_THAT(sink.events, ElementsAre("sinks"));
+  EXPECT_EQ(sink.bytes, without.bytes);
+  EXPECT_EQ(sink.nodes, without.nodes);
+  EXPECT_EQ(sink.gather, without.gather);
+  const Names both = compile({kSpout, R"json(sinks=[{"name": "drain", "shape": {"type": "plane"}}])json"});
+  EXPECT_THAT(both.events, ElementsAre("emit", "sinks"));
+  EXPECT_EQ(both.bytes, without.bytes);
+  EXPECT_EQ(both.order, without.order);
+  ASSERT_EQ(both.gather.size(), 2u) << "an emitter's particles are a set";
+  EXPECT_EQ(both.gather[1], without.gather[0]);
+  EXPECT_EQ(both.channels, (std::vector<std::vector<std::string>>{{}, {}}));
+}
+
+TEST(CompiledPlan, SetsOfEmitters_HaveTheChannelsOfTheirMaterial) {
+  const Names names = compile({kSpout, "volume_correction={}"});
+  EXPECT_THAT(names.channels, ElementsAre(ElementsAre("volume_gained"), ElementsAre("volume_gained")));
+}
+
 TEST(CompiledPlan, Elastic_HasNoReturnMapAndNoVolumeToCorrect) {
   const Names names = compile({kTwoBodies, "volume_correction={}"});
   ASSERT_EQ(names.gather.size(), 2u);
@@ -168,7 +200,8 @@ TEST(CompiledPlan, EffectStatus_AgreesWithThePasses) {
   const auto scene = read_scene(REPOSE_SCENES "/hourglass.json");
   ASSERT_TRUE(scene);
   for (const EffectStatus& effect : effect_status(*scene)) {
-    EXPECT_TRUE(effect.on) << effect.name;
+    const std::set<std::string> asked{"gravity", "collider", "volume_correction"};
+    EXPECT_EQ(effect.on, asked.contains(effect.name)) << effect.name;
     EXPECT_NE(effect.reason, "") << effect.name;
   }
 }

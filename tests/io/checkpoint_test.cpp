@@ -46,7 +46,7 @@ State<Real> make_state(bool filled) {
     for (std::size_t p = 0; p < set.count; ++p) set.id[p] = static_cast<std::uint32_t>(1000 * k + 7 * p);
   }
   if (filled) {
-    state.counters = {3, 271, 0.0123, 0.1373, 1e-4, 2.5, 17.0, 2, 991, 5, 8};
+    state.counters = {3, 271, 0.0123, 0.1373, 1e-4, 2.5, 17.0, 2, 991, 5, 8, 0.01};
   }
   return state;
 }
@@ -66,6 +66,7 @@ void fill_gaps(Counters& counters, int byte) {
   counters.runs_when_ordered = c.runs_when_ordered;
   counters.runs_wasted = c.runs_wasted;
   counters.orders = c.orders;
+  counters.unseen_motion = c.unseen_motion;
 }
 
 template <class Real>
@@ -193,6 +194,41 @@ TYPED_TEST(Checkpoint, OtherScene_NamesBoth) {
   EXPECT_EQ(error.kind, ErrorKind::kBadScene);
   EXPECT_THAT(error.text(), HasSubstr("0123456789abcdef"));
   EXPECT_THAT(error.text(), HasSubstr("fedcba9876543210"));
+}
+
+TYPED_TEST(Checkpoint, WhereParticlesBeginAndEnd_OtherCountsAndTheLedgerComeBack) {
+  State<TypeParam> saved = make_state<TypeParam>(true);
+  saved.ledger = {kParticles, 991, {17, 24}, {1, 2, 3, 4}};
+  this->save(saved);
+  State<TypeParam> fresh;  // as compiled: an empty set, and a longer one
+  fresh.sets.resize(2);
+  for (const char* name : {"gained", "age"}) fresh.sets[1].extra.push_back({name, {}});
+  fresh.sets[1].allocate(3 * kParticles);
+  fresh.ledger = {0, 0, {0, 0}, {0, 0, 0, 0}};
+  const auto loaded = load_checkpoint(this->path(), "0123456789abcdef", fresh);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(state_hash(fresh), state_hash(saved));
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(fresh.sets[k].count, kParticles);
+  EXPECT_EQ(fresh.ledger.initial, kParticles);
+  EXPECT_EQ(fresh.ledger.next_id, 991u);
+  EXPECT_EQ(fresh.ledger.emitted, saved.ledger.emitted);
+  EXPECT_EQ(fresh.ledger.removed, saved.ledger.removed);
+  EXPECT_EQ(fresh.counters.unseen_motion, saved.counters.unseen_motion);
+}
+
+TYPED_TEST(Checkpoint, EmptyState_IsSavedAndLoaded) {
+  State<TypeParam> saved;
+  saved.sets.resize(1);
+  saved.sets[0].begin = {0};
+  saved.ledger.emitted = {0};
+  this->save(saved);
+  State<TypeParam> loaded;
+  loaded.sets.resize(1);
+  loaded.sets[0].allocate(5);
+  loaded.ledger.emitted = {0};
+  ASSERT_TRUE(load_checkpoint(this->path(), "0123456789abcdef", loaded));
+  EXPECT_EQ(loaded.particles(), 0u);
+  EXPECT_EQ(loaded.grid.size(), 0u);
 }
 
 TYPED_TEST(Checkpoint, OtherPrecisionOrParticles_IsRefused) {

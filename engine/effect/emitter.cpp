@@ -1,0 +1,267 @@
+#include "engine/effect/emitter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/geometry/seed_lattice.h"
+
+namespace repose {
+namespace {
+
+/// Places are drawn in the bounds of a shape until one lies inside.
+constexpr double kLeastShare = 1e-3;
+/// Coordinates of cells have 32 bits.
+constexpr double kMostCells = 1e9;
+
+void describe_column(Fields& fields, Emitter& emitter) {
+  fields.vector("center", emitter.center, {.unit = "m", .meaning = "middle of the mouth", .required = true});
+  fields.vector("normal", emitter.normal,
+                {.meaning = "direction of any length that the column moves in, across the mouth"});
+  fields.number("speed", emitter.speed,
+                {.unit = "m/s", .meaning = "of the column", .low = 0.0, .low_open = true, .required = true});
+  fields.check(emitter.normal.norm() > 1e-12, "normal", "must not be zero, for example [0, -1, 0]");
+}
+
+void describe_disc(Fields& fields, Emitter& emitter) {
+  describe_column(fields, emitter);
+  fields.number("radius", emitter.radius,
+                {.unit = "m", .meaning = "of the mouth", .low = 0.0, .low_open = true, .required = true});
+}
+
+void describe_rectangle(Fields& fields, Emitter& emitter) {
+  describe_column(fields, emitter);
+  fields.vector("direction", emitter.direction, {.meaning = "of the mouth's first side, of any length"});
+  fields.number("half_width", emitter.half_width,
+                {.unit = "m",
+                 .meaning = "from the middle of the mouth to its edge along \"direction\"",
+                 .low = 0.0,
+                 .low_open = true,
+                 .required = true});
+  fields.number("half_depth", emitter.half_depth,
+                {.unit = "m",
+                 .meaning = "the same across \"direction\"",
+                 .low = 0.0,
+                 .low_open = true,
+                 .required = true});
+  fields.check(emitter.direction.cross(emitter.normal).norm() > 1e-9 * emitter.normal.norm(), "direction",
+               "must not be zero, nor along \"normal\"");
+}
+
+void describe_volume(Fields& fields, Emitter& emitter) {
+  bool present = false;
+  fields.object("shape", present, true, "the solid in which particles appear at random",
+                [&](Fields& f) { describe(f, emitter.shape); });
+  fields.number("rate", emitter.rate,
+                {.unit = "m^3/s",
+                 .meaning = "material per second, at the density that it is seeded with",
+                 .low = 0.0,
+                 .low_open = true,
+                 .required = true});
+  fields.vector("velocity", emitter.velocity, {.unit = "m/s", .meaning = "of particles that begin"});
+}
+
+void describe(Fields& fields, Emitter& emitter) {
+  fields.text("name", emitter.name, "what messages and the ledger call it; no two emitters share a name", true);
+  fields.text("material", emitter.material, "name of one of the materials", true);
+  const Alternative kinds[] = {
+      {"disc", "a column moves through a disc", [&](Fields& f) { describe_disc(f, emitter); }},
+      {"rectangle", "a column moves through a rectangle", [&](Fields& f) { describe_rectangle(f, emitter); }},
+      {"volume", "a solid is filled at random", [&](Fields& f) { describe_volume(f, emitter); }},
+  };
+  int chosen = static_cast<int>(emitter.type);
+  fields.alternatives(chosen, kinds, "what kind of emitter");
+  emitter.type = static_cast<Emitter::Type>(chosen);
+  fields.integer("particles_per_cell", emitter.particles_per_cell,
+                 {.meaning = "particles in a full cell", .low = 1.0, .high = 512.0});
+  fields.integer("seed", emitter.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
+  fields.number("start", emitter.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
+  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; 0: never", .low = 0.0});
+  fields.check(emitter.end == 0.0 || emitter.end > emitter.start, "end", "must be after \"start\", or 0");
+  fields.number(
+      "spread", emitter.spread,
+      {.meaning = "largest random velocity of a particle, as a share of its speed", .low = 0.0, .high = 1.0});
+  fields.integer("most_particles", emitter.most_particles,
+                 {.meaning = "it ends when it has made so many; 0: no limit", .low = 0.0, .high = 4.0e9});
+  fields.number("most_volume", emitter.most_volume,
+                {.unit = "m^3", .meaning = "it ends when it has made so much; 0: no limit", .low = 0.0});
+}
+
+/// What no key can say alone, and what a host may have filled in; empty if all is right.
+std::string wrong_with(const Emitter& emitter, const Flow& flow, const Surroundings& around) {
+  const bool volume = emitter.type == Emitter::Type::kVolume;
+  const Vec3 motion = volume ? emitter.velocity : emitter.normal;
+  if (!volume && !(motion.norm() > 1e-12 && emitter.speed > 0.0))
+    return "needs a normal and a speed that are not zero";
+  if (around.flat_axis >= 0) {
+    if (std::abs(motion[around.flat_axis]) > 1e-9 * motion.norm())
+      return "must not move along the flat axis (plane_strain)";
+    const double along = std::abs(emitter.direction.normalized()[around.flat_axis]);
+    if (emitter.type == Emitter::Type::kRectangle && along > 1e-9 && along < 1.0 - 1e-9)
+      return "the rectangle's direction must lie in the plane, or across it (plane_strain)";
+  }
+  if (!(std::isfinite(flow.rate) && flow.rate > 0.0))
+    return "makes no particles; is its size or its rate zero?";
+  const double reach =
+      emitter.center.cwiseAbs().maxCoeff() + emitter.radius + emitter.half_width + emitter.half_depth;
+  if (!volume && !(reach < kMostCells * around.spacing)) return "reaches beyond 1e9 cells from the origin";
+  return "";
+}
+
+/// The share of its bounds that a shape fills; 0 if it is endless.
+Result<double> share_of_bounds(const Shape& shape, int flat_axis) {
+  Vec3 size = shape.bounds().upper - shape.bounds().lower;
+  if (!size.allFinite()) return 0.0;
+  if (flat_axis < 0) return shape.volume() / size.prod();
+  const auto area = shape.section_area(flat_axis);
+  if (!area) return area.error();
+  size[flat_axis] = 1.0;
+  return *area / size.prod();
+}
+
+/// One emitter at work.
+template <class Real>
+struct Working {
+  Stream stream;
+  std::size_t emitter, set;
+  SetDescription description;
+  double patience;  ///< s that a particle may wait
+};
+
+/// The time in which what begins goes about a cell, at its speed and as it falls; where nothing moves it, that
+/// in which a cell's worth has come together.
+double patience_of(const Emitter& emitter, const Flow& flow, const Surroundings& around) {
+  const double speed = emitter.type == Emitter::Type::kVolume ? emitter.velocity.norm() : emitter.speed;
+  const double leaving = speed + std::sqrt(2.0 * around.gravity.norm() * around.spacing);
+  return leaving > 0.0 ? around.spacing / leaving : static_cast<double>(emitter.particles_per_cell) / flow.rate;
+}
+
+template <class Real>
+class EmitterRuntime {
+ public:
+  EmitterRuntime(std::vector<Working<Real>> working, const Assembly<Real>& assembly)
+      : working_(std::move(working)), surroundings_(assembly.surroundings), initialize_(assembly.initialize) {}
+
+  bool due(const State<Real>& state, Moment moment) const {
+    const double now = state.counters.time;
+    return std::any_of(working_.begin(), working_.end(), [&](const Working<Real>& working) {
+      const Flow& flow = working.stream.flow();
+      const std::uint64_t made = state.ledger.emitted[working.emitter];
+      if (flow.count(now) <= made) return false;
+      return moment == Moment::kEndOfFrame || now - flow.crossing(made) >= working.patience;
+    });
+  }
+
+  /// All that has crossed by now, of all emitters: the order event has to be paid for anyway.
+  void run(State<Real>& state, ParticleEdit<Real>& edit) const {
+    for (const Working<Real>& working : working_) {
+      std::uint64_t& made = state.ledger.emitted[working.emitter];
+      const std::uint64_t all = working.stream.flow().count(state.counters.time);
+      if (all > made) emit(working, made, all, state, edit);
+      made = std::max(made, all);
+    }
+  }
+
+ private:
+  void emit(const Working<Real>& working, std::uint64_t first, std::uint64_t last, const State<Real>& state,
+            ParticleEdit<Real>& edit) const;
+
+  std::vector<Working<Real>> working_;
+  Surroundings surroundings_;
+  std::function<void(Newcomers<Real>&)> initialize_;
+};
+
+/// Serials [first, last), each where free flight has brought it since it crossed.
+template <class Real>
+void EmitterRuntime<Real>::emit(const Working<Real>& working, std::uint64_t first, std::uint64_t last,
+                                const State<Real>& state, ParticleEdit<Real>& edit) const {
+  const double now = state.counters.time, ramp = surroundings_.gravity_ramp;
+  const Vec3 gravity = surroundings_.gravity * (ramp > 0.0 ? std::min(1.0, now / ramp) : 1.0);
+  SetEdit<Real>& added = edit.add(state, working.set, last - first);
+  ParticleSet<Real>& set = added.newcomers;
+  std::vector<Vec3> places(set.count);
+  for (std::size_t p = 0; p < set.count; ++p) {
+    const Stream::Birth birth = working.stream.birth(first + p);
+    const double age = std::max(0.0, now - working.stream.flow().crossing(first + p));
+    const Vec3 v = birth.velocity + age * gravity;
+    places[p] = birth.position + age * (birth.velocity + 0.5 * age * gravity);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::size_t>(axis);
+      const bool flat = axis == surroundings_.flat_axis;
+      const double x = places[p][axis] / surroundings_.spacing, cell = std::floor(x);
+      // On the lattice of seeds, so that nothing below 1 rounds up to it.
+      const double offset = std::floor((x - cell) / kLatticeStep) * kLatticeStep;
+      set.position[axis][p] = static_cast<Real>(flat ? 0.5 : offset);
+      added.cells[p][at] = (flat ? 0 : static_cast<std::int32_t>(cell)) + surroundings_.origin_cells[at];
+      set.velocity[axis][p] = static_cast<Real>(v[axis]);
+    }
+  }
+  Newcomers<Real> newcomers{
+      set, 0, set.count, working.description, surroundings_, [&places](std::size_t p) { return places[p]; }};
+  initialize_(newcomers);
+}
+
+}  // namespace
+
+void Emitters::declare(Fields& fields) {
+  fields.list("emitters", false, "where particles begin during the run", [this](Fields& f) {
+    Emitter emitter;
+    describe(f, emitter);
+    const bool taken =
+        std::any_of(list.begin(), list.end(), [&](const Emitter& e) { return e.name == emitter.name; });
+    f.check(!taken, "name", "\"" + emitter.name + "\" is taken by another emitter; choose another");
+    std::string names;
+    for (const std::string& name : materials) names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    const bool known = std::find(materials.begin(), materials.end(), emitter.material) != materials.end();
+    f.check(materials.empty() || known, "material",
+            "no material \"" + emitter.material + "\"; choose among " + names);
+    list.push_back(emitter);
+  });
+}
+
+Result<void> Emitters::prepare(const Surroundings& surroundings) {
+  shapes_.clear();
+  for (const Emitter& emitter : list) {
+    const std::string key = "emitters." + emitter.name;
+    const Flow flow = flow_of(emitter, surroundings.spacing, surroundings.flat_axis);
+    if (const std::string wrong = wrong_with(emitter, flow, surroundings); !wrong.empty())
+      return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
+    shapes_.emplace_back();
+    if (emitter.type != Emitter::Type::kVolume) continue;
+    auto shape = surroundings.shape(emitter.shape, key + ".shape");
+    if (!shape) return shape.error();
+    const auto share = share_of_bounds(**shape, surroundings.flat_axis);
+    if (!share) return Error{share.error().kind, share.error().text(), surroundings.where(key + ".shape")};
+    const Bounds bounds = (*shape)->bounds();
+    const double reach = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+    if (!(*share > kLeastShare && reach < kMostCells * surroundings.spacing)) {
+      return Error{ErrorKind::kBadScene,
+                   "is endless, too far away, or too thin for places to be drawn in it at random; a box or a "
+                   "sphere will do",
+                   surroundings.where(key + ".shape")};
+    }
+    shapes_.back() = *shape;
+  }
+  return {};
+}
+
+template <class Real>
+void Emitters::add_to_nodes(Assembly<Real>& assembly) const {
+  const Surroundings& around = assembly.surroundings;
+  std::vector<Working<Real>> working;
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    const std::size_t set = assembly.state.sets.size() - list.size() + e;
+    Stream stream(list[e], shapes_[e], around.spacing, around.flat_axis);
+    const double patience = patience_of(list[e], stream.flow(), around);
+    working.push_back({std::move(stream), e, set, assembly.sets[set], patience});
+  }
+  const auto runtime = std::make_shared<EmitterRuntime<Real>>(std::move(working), assembly);
+  assembly.plan.events.push_back(
+      {{"emit", "emitters", {}, {"particles"}},
+       [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },
+       [runtime](State<Real>& state, ParticleEdit<Real>& edit) { runtime->run(state, edit); }});
+}
+
+template void Emitters::add_to_nodes(Assembly<float>&) const;
+template void Emitters::add_to_nodes(Assembly<double>&) const;
+
+}  // namespace repose

@@ -1,0 +1,144 @@
+#include "engine/effect/sink.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace repose {
+namespace {
+
+void describe(Fields& fields, Sink& sink) {
+  fields.text("name", sink.name, "what messages and the ledger call it; no two sinks share a name", true);
+  bool present = false;
+  fields.object("shape", present, true, "particles within it end", [&](Fields& f) { describe(f, sink.shape); });
+  fields.flag("outside", sink.outside, "particles outside the shape end: it is a domain");
+  fields.number("start", sink.start, {.unit = "s", .meaning = "from when on", .low = 0.0});
+  fields.number("end", sink.end, {.unit = "s", .meaning = "until when; 0: always", .low = 0.0});
+  fields.check(sink.end == 0.0 || sink.end > sink.start, "end", "must be after \"start\", or 0");
+}
+
+struct BuiltSink {
+  std::shared_ptr<const Shape> shape;
+  bool outside;
+  double start, end;  // s
+
+  bool works(double time) const { return time >= start && time <= end; }
+  /// Negative in the sink; its size is never more than the distance to the surface.
+  double distance(const Vec3& x) const {
+    return outside ? -shape->signed_distance(x) : shape->signed_distance(x);
+  }
+};
+
+template <class Real>
+class SinkRuntime {
+ public:
+  SinkRuntime(std::vector<BuiltSink> sinks, int flat_axis) : sinks_(std::move(sinks)), flat_axis_(flat_axis) {}
+
+  bool due(const State<Real>& state, Moment moment) const {
+    const bool look = moment == Moment::kEndOfFrame || state.counters.unseen_motion >= state.spacing;
+    return look && std::any_of(sinks_.begin(), sinks_.end(),
+                               [&](const BuiltSink& sink) { return sink.works(state.counters.time); });
+  }
+
+  void run(State<Real>& state, ParticleEdit<Real>& edit) const;
+
+ private:
+  struct Found {
+    std::uint32_t place;
+    std::uint32_t sink;
+  };
+  /// Of one block, per set.
+  using FoundInBlock = std::vector<std::vector<Found>>;
+
+  void look(const State<Real>& state, std::size_t owner, FoundInBlock& found) const;
+  Vec3 in_plane(Vec3 x) const {
+    if (flat_axis_ >= 0) x[flat_axis_] = 0.0;  // material lies in the plane through the origin
+    return x;
+  }
+
+  std::vector<BuiltSink> sinks_;
+  int flat_axis_;
+};
+
+/// Particles of a block that lie in sinks; most blocks are far from all.
+template <class Real>
+void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundInBlock& found) const {
+  const Index3 block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+  const double reach = 0.5 * std::sqrt(3.0) * kArenaSide * state.spacing;  // of its particles from its middle
+  const Vec3 middle = in_plane(state.world(block, {2.0, 2.0, 2.0}));
+  std::vector<std::uint32_t> near;
+  for (std::size_t s = 0; s < sinks_.size(); ++s) {
+    if (sinks_[s].works(state.counters.time) && sinks_[s].distance(middle) < reach)
+      near.push_back(static_cast<std::uint32_t>(s));
+  }
+  if (near.empty()) return;
+  found.resize(state.sets.size());
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    const ParticleSet<Real>& set = state.sets[k];
+    for (std::uint32_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+      const Vec3 x = in_plane(state.world(
+          block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])}));
+      const auto in =
+          std::find_if(near.begin(), near.end(), [&](std::uint32_t s) { return sinks_[s].distance(x) < 0.0; });
+      if (in != near.end()) found[k].push_back({p, *in});
+    }
+  }
+}
+
+template <class Real>
+void SinkRuntime<Real>::run(State<Real>& state, ParticleEdit<Real>& edit) const {
+  state.counters.unseen_motion = 0.0;
+  std::vector<FoundInBlock> blocks(state.grid.owners().size());
+  edit.threads.for_each(
+      blocks.size(), [&](std::size_t owner) { look(state, owner, blocks[owner]); }, 8);
+  for (const FoundInBlock& found : blocks) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      for (const Found& particle : found[k]) {
+        edit.sets[k].removed.push_back(particle.place);
+        ++state.ledger.removed[particle.sink * state.sets.size() + k];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void Sinks::declare(Fields& fields) {
+  fields.list("sinks", false, "where particles end", [this](Fields& f) {
+    Sink sink;
+    describe(f, sink);
+    const bool taken =
+        std::any_of(list.begin(), list.end(), [&](const Sink& s) { return s.name == sink.name; });
+    f.check(!taken, "name", "\"" + sink.name + "\" is taken by another sink; choose another");
+    list.push_back(sink);
+  });
+}
+
+Result<void> Sinks::prepare(const Surroundings& surroundings) {
+  shapes_.clear();
+  for (const Sink& sink : list) {
+    auto shape = surroundings.shape(sink.shape, "sinks." + sink.name + ".shape");
+    if (!shape) return shape.error();
+    shapes_.push_back(*shape);
+  }
+  return {};
+}
+
+template <class Real>
+void Sinks::add_to_nodes(Assembly<Real>& assembly) const {
+  std::vector<BuiltSink> sinks;
+  for (std::size_t s = 0; s < list.size(); ++s) {
+    const double end = list[s].end > 0.0 ? list[s].end : std::numeric_limits<double>::infinity();
+    sinks.push_back({shapes_[s], list[s].outside, list[s].start, end});
+  }
+  const auto runtime = std::make_shared<SinkRuntime<Real>>(std::move(sinks), assembly.surroundings.flat_axis);
+  assembly.plan.events.push_back(
+      {{"sinks", "sinks", {"position"}, {"particles"}},
+       [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },
+       [runtime](State<Real>& state, ParticleEdit<Real>& edit) { runtime->run(state, edit); }});
+}
+
+template void Sinks::add_to_nodes(Assembly<float>&) const;
+template void Sinks::add_to_nodes(Assembly<double>&) const;
+
+}  // namespace repose
