@@ -10,6 +10,7 @@
 
 #include "engine/base/params.h"
 #include "engine/base/result.h"
+#include "engine/effect/contact_log.h"
 #include "engine/effect/solid.h"
 #include "engine/step/step_plan.h"
 #include "kernels/material/materials.h"
@@ -44,6 +45,7 @@ struct Surroundings {
   Vec3 gravity{0, 0, 0};  ///< m/s^2, at its full value
   std::string folder;     ///< where relative paths start
   bool allow_outside_paths = false;
+  std::vector<std::string> solids;                           ///< names of the colliders
   std::function<std::string(const std::string& key)> where;  ///< "file:line:col: key"
 
   /// Builds the shape that stands at a key. Errors: 65, 66, with the key.
@@ -73,6 +75,8 @@ struct Assembly {
   const std::vector<Solid>& solids;
   const std::vector<SetDescription>& sets;  ///< in the order of the state's sets
   const Surroundings& surroundings;
+  /// Made by an effect that measures what solids do, and filled by them; null where none does.
+  std::shared_ptr<ContactLog> contact_log = nullptr;
 };
 
 /// The hooks that an effect may fill, each with the default of adding nothing. An effect further has
@@ -98,6 +102,9 @@ struct Effect {
   /// Passes over nodes, and those that go with order events, frames and steps.
   template <class Real>
   void add_to_nodes(Assembly<Real>&) const {}
+  /// Passes of set k just before its particles move.
+  template <class Real>
+  void add_before_motion(Assembly<Real>&, std::size_t) const {}
   /// Passes of set k after its particles have moved and before its trial strain is formed.
   template <class Real>
   void add_after_motion(Assembly<Real>&, std::size_t) const {}

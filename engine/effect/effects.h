@@ -6,11 +6,15 @@
 
 #include "engine/effect/collider.h"
 #include "engine/effect/gravity.h"
+#include "engine/effect/pin.h"
+#include "engine/effect/probe.h"
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
 
 using Effects = std::tuple<Gravity,            // v += dt g
+                           Pins,               // v* of held nodes
+                           Probes,             // asks solids for a log, so before them
                            Colliders,          // v* -> v-bar -> v-tilde: last of the node passes
                            VolumeCorrection>;  // around the return map
 

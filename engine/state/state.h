@@ -37,6 +37,7 @@ struct State {
   Topology topology;
   std::vector<ParticleSet<Real>> sets;
   Counters counters;
+  std::vector<double> tallies;  ///< running sums of what is measured; saved, but no part of the state's hash
 
   BlockGrid grid;
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar

@@ -47,10 +47,10 @@ void collect_keys(const Json::Value& schema, std::set<std::string>& keys) {
 TEST(SceneSchema, Root_ListsEveryKeyAndNoOther) {
   const Json::Value schema = parsed_schema();
   EXPECT_EQ(schema["$schema"].asString(), "https://json-schema.org/draft/2020-12/schema");
-  EXPECT_EQ(
-      schema["properties"].getMemberNames(),
-      (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "gravity", "grid", "materials",
-                                "name", "output", "parameters", "repose", "time", "up", "volume_correction"}));
+  EXPECT_EQ(schema["properties"].getMemberNames(),
+            (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "gravity", "grid",
+                                      "materials", "name", "output", "parameters", "pins", "probes", "repose",
+                                      "time", "up", "volume_correction"}));
   EXPECT_FALSE(schema["additionalProperties"].asBool());
   std::set<std::string> required;
   for (const Json::Value& key : schema["required"]) required.insert(key.asString());
