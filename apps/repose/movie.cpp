@@ -19,11 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct CachedFrame {
+  std::string path;
+  double time;  // s
+};
+
 /// The caches of the frames from `first` to `last` that the log names: the folder may hold later ones of an
 /// earlier run, and none of frames that nobody asked to write.
-std::vector<std::string> cached_frames(const std::string& folder, const Json::Value& log, std::int64_t first,
+std::vector<CachedFrame> cached_frames(const std::string& folder, const Json::Value& log, std::int64_t first,
                                        std::int64_t last) {
-  std::vector<std::string> files;
+  std::vector<CachedFrame> files;
   for (const Json::Value& row : log["frames"]) {
     const std::int64_t frame = row["frame"].asInt64();
     if (frame < first || frame > last) continue;
@@ -32,7 +37,7 @@ std::vector<std::string> cached_frames(const std::string& folder, const Json::Va
     const std::string stem = folder + "/" + log["scene"]["name"].asString() + ".points." + digits;
     for (const char* extension : {".vdb", ".ply"}) {
       if (!fs::exists(stem + extension)) continue;
-      files.push_back(stem + extension);
+      files.push_back({stem + extension, row["time"].asDouble()});
       break;
     }
   }
@@ -90,7 +95,8 @@ std::vector<SolidMesh> draw_solids(const Scene& scene, const std::vector<Solid>&
   return meshes;
 }
 
-/// The scene's camera, or one that sees all of the material and the glass around it.
+/// The scene's camera, or one that sees all of the material and the glass around it; `solids` may hold a solid
+/// as it stands at several times.
 Camera choose_camera(const Scene& scene, const std::vector<Solid>& solids, const Bounds& material,
                      const MovieArguments& arguments) {
   Camera camera;
@@ -104,9 +110,8 @@ Camera choose_camera(const Scene& scene, const std::vector<Solid>& solids, const
     return camera;
   }
   Bounds bounds = material;
-  for (std::size_t k = 0; k < solids.size(); ++k) {
-    if (scene.effect<Colliders>().list[k].hollow && solids[k].shape->bounds().upper.allFinite())
-      include(bounds, solids[k].shape->bounds());
+  for (const Solid& solid : solids) {
+    if (solid.hollow && solid.shape->bounds().upper.allFinite()) include(bounds, solid.shape->bounds());
   }
   const Vec3 direction = scene.up == UpAxis::kY ? Vec3(0.45, 0.32, 1.0) : Vec3(0.45, -1.0, 0.32);
   camera.target = 0.5 * (bounds.lower + bounds.upper);
@@ -117,7 +122,7 @@ Camera choose_camera(const Scene& scene, const std::vector<Solid>& solids, const
 struct Shoot {
   Scene scene;
   std::vector<Solid> solids;
-  std::vector<std::string> frames;
+  std::vector<CachedFrame> frames;
 };
 
 /// What is to be filmed, from the folder of a run.
@@ -155,10 +160,12 @@ int movie_command(const MovieArguments& arguments) {
   auto shoot = prepare(arguments);
   if (!shoot) return fail(shoot.error());
   Bounds material;
-  for (const std::string& path : {shoot->frames.front(), shoot->frames.back()}) {
-    auto points = read_points(path);
+  std::vector<Solid> seen;
+  for (const CachedFrame& frame : {shoot->frames.front(), shoot->frames.back()}) {
+    auto points = read_points(frame.path);
     if (!points) return fail(points.error());
     include(material, bounds_of(*points));
+    for (Solid& solid : solids_at(shoot->solids, frame.time)) seen.push_back(std::move(solid));
   }
   if (!material.upper.allFinite() && !shoot->scene.camera.given) {
     return fail(
@@ -167,23 +174,28 @@ int movie_command(const MovieArguments& arguments) {
          "the scene a camera",
          arguments.folder});
   }
-  const Camera camera = choose_camera(shoot->scene, shoot->solids, material, arguments);
-  const auto solids = draw_solids(shoot->scene, shoot->solids, 12.0 * (camera.eye - camera.target).norm());
+  const Camera camera = choose_camera(shoot->scene, seen, material, arguments);
+  const double extent = 12.0 * (camera.eye - camera.target).norm();
+  const bool any_moves = std::any_of(shoot->solids.begin(), shoot->solids.end(),
+                                     [](const Solid& solid) { return solid.motion != nullptr; });
+  auto solids = draw_solids(shoot->scene, shoot->solids, extent);
   const std::string path =
       arguments.out.empty() ? arguments.folder + "/" + shoot->scene.name + ".mp4" : arguments.out;
   auto film = Film::start(path, arguments.width, arguments.height, shoot->scene.time.frames_per_second);
   if (!film) return fail(film.error());
   Progress progress("movie", static_cast<double>(shoot->frames.size()), true);
   for (std::size_t k = 0; k < shoot->frames.size(); ++k) {
-    auto points = read_points(shoot->frames[k]);
+    const auto& [cache, time] = shoot->frames[k];
+    auto points = read_points(cache);
     if (!points) return fail(points.error());
+    if (any_moves) solids = draw_solids(shoot->scene, solids_at(shoot->solids, time), extent);
     const Image image = render_grains(grains_of(*points), solids, camera, Light{}, RenderOptions{});
     if (auto added = film->add(image); !added) return fail(added.error());
     if (arguments.pictures) {
-      const std::string picture = fs::path(shoot->frames[k]).replace_extension(".png").string();
+      const std::string picture = fs::path(cache).replace_extension(".png").string();
       if (auto written = write_png(image, picture); !written) return fail(written.error());
     }
-    progress.update(static_cast<double>(k + 1), shoot->frames[k]);
+    progress.update(static_cast<double>(k + 1), cache);
   }
   progress.finish("done");
   if (auto finished = film->finish(); !finished) return fail(finished.error());

@@ -147,6 +147,8 @@ Result<void> Run::write_frame(const FrameReport& frame) {
   const Json::Value& row = log_.add(frame, *simulation_);
   tell(frame, row);
   if (auto written = log_.write(folder_.log()); !written) return written;
+  const std::string probes = folder_.path() + "/" + scene_.name + ".probes.csv";
+  if (auto written = log_.write_probes(*simulation_, probes); !written) return written;
   if (!scene_.output.checkpoint) return {};
   if (auto saved = simulation_->save(folder_.checkpoint(frame.frame)); !saved) return saved;
   folder_.prune_checkpoints(frame.frame);

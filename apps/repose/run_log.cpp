@@ -4,6 +4,7 @@
 #include <json/writer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -155,6 +156,10 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
     row["seconds"][kPhaseNames[k]] = frame.profile.seconds[k];
   add_figures(simulation.diagnose(), log_["scene"]["spacing"].asDouble(), row);
   add_ledger(simulation.ledger(), row["ledger"]);
+  // A height where nothing lies is null: JSON knows no other word for it.
+  for (const Measurement& m : simulation.measurements()) {
+    row["probes"][m.probe][m.quantity] = std::isfinite(m.value) ? Json::Value(m.value) : Json::Value();
+  }
   row["blocks"] = Json::UInt64(simulation.memory().blocks);
   row["hash"] = hex(simulation.hash());
   return log_["frames"].append(row);
@@ -164,6 +169,35 @@ Result<void> RunLog::write(const std::string& path) const {
   Json::StreamWriterBuilder builder;
   builder["indentation"] = " ";
   const std::string text = Json::writeString(builder, log_) + "\n";
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  if (auto written = file->write(text.data(), text.size()); !written) return written;
+  return file->commit();
+}
+
+Result<void> RunLog::write_probes(const Simulation& simulation, const std::string& path) const {
+  const std::vector<Measurement> columns = simulation.measurements();
+  if (columns.empty()) return {};
+  std::string text = "frame,time [s]";
+  for (const Measurement& m : columns) {
+    text += "," + m.probe + "." + m.quantity + (m.unit.empty() ? "" : " [" + m.unit + "]");
+  }
+  text += "\n";
+  const auto add_number = [&text](const Json::Value& value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, ",%.9g", value.isNumeric() ? value.asDouble() : 0.0);
+    text += value.isNumeric() ? digits : ",";
+  };
+  for (const Json::Value& row : log_["frames"]) {
+    text += std::to_string(row["frame"].asInt64());
+    add_number(row["time"]);
+    const Json::Value& probes = row["probes"];
+    for (const Measurement& m : columns) {
+      const bool there = probes.isObject() && probes[m.probe].isObject();
+      add_number(there ? probes[m.probe][m.quantity] : Json::Value());
+    }
+    text += "\n";
+  }
   auto file = AtomicFile::create(path);
   if (!file) return file.error();
   if (auto written = file->write(text.data(), text.size()); !written) return written;

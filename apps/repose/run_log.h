@@ -35,6 +35,10 @@ class RunLog {
   /// Errors: 73, 74.
   Result<void> write(const std::string& path) const;
 
+  /// What probes measured, a row per frame; writes nothing where the scene has none. It is made from the log,
+  /// so it holds the frames of an earlier part of the run too. Errors: 73, 74.
+  Result<void> write_probes(const Simulation& simulation, const std::string& path) const;
+
  private:
   Json::Value log_;
 };

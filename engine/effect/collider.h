@@ -1,7 +1,6 @@
-// Repose: solids that material runs into (Klar et al. 2016, section 8). A collider constrains the nodes
-// near its surface, never the particles, so stress and motion stay in step. Only blocks near a surface know of
-// it; there the distances and normals of the nodes are tabulated, once per block that the material ever
-// reaches.
+// Repose: solids that material runs into (Klar et al. 2016, section 8), at rest or on a given motion. A
+// collider constrains the nodes near its surface, never the particles, so stress and motion stay in step. Only
+// blocks near a surface know of it (engine/effect/contact_tables.h).
 #pragma once
 
 #include <string>
@@ -27,6 +26,7 @@ struct Collider {
   Contact contact = Contact::kSeparating;
   double friction = 0.0;  ///< Coulomb's coefficient mu_b, no unit
   Appearance appearance = Appearance::kAuto;
+  MotionDescription motion;
 };
 
 /// All colliders of a scene, as one effect: a node may be near several.
@@ -42,7 +42,8 @@ struct Colliders : Effect {
   }
 
   /// v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016, sections 8 and 8.1),
-  /// in the order of the list; and the tables that this needs, after each order event.
+  /// in the order of the list; the tables that this needs, after each order event; and where a solid moves, its
+  /// poses.
   template <class Real>
   void add_to_nodes(Assembly<Real>& assembly) const;
 };

@@ -10,6 +10,7 @@
 
 #include "engine/base/params.h"
 #include "engine/base/result.h"
+#include "engine/effect/contact_log.h"
 #include "engine/effect/solid.h"
 #include "engine/step/step_plan.h"
 #include "kernels/material/materials.h"
@@ -48,6 +49,7 @@ struct Surroundings {
   Index3 origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice
   std::string folder;            ///< where relative paths start
   bool allow_outside_paths = false;
+  std::vector<std::string> solids;                           ///< names of the colliders
   std::function<std::string(const std::string& key)> where;  ///< "file:line:col: key"
 
   /// Builds the shape that stands at a key. Errors: 65, 66, with the key.
@@ -80,6 +82,8 @@ struct Assembly {
   /// Makes particles that begin during the run ready, as those of bodies were: the channels and the hooks
   /// `initialize` of all effects. It may be kept beyond the assembly.
   std::function<void(Newcomers<Real>&)> initialize;
+  /// Made by an effect that measures what solids do, and filled by them; null where none does.
+  std::shared_ptr<ContactLog> contact_log = nullptr;
 };
 
 /// The hooks that an effect may fill, each with the default of adding nothing. An effect further has
@@ -105,6 +109,9 @@ struct Effect {
   /// Passes over nodes, and those that go with order events, frames and steps.
   template <class Real>
   void add_to_nodes(Assembly<Real>&) const {}
+  /// Passes of set k just before its particles move.
+  template <class Real>
+  void add_before_motion(Assembly<Real>&, std::size_t) const {}
   /// Passes of set k after its particles have moved and before its trial strain is formed.
   template <class Real>
   void add_after_motion(Assembly<Real>&, std::size_t) const {}

@@ -10,12 +10,15 @@
 #include "engine/effect/dilatancy.h"
 #include "engine/effect/emitter.h"
 #include "engine/effect/gravity.h"
+#include "engine/effect/force_field.h"
 #include "engine/effect/hardening.h"
 #include "engine/effect/moisture.h"
 #include "engine/effect/prestress.h"
 #include "engine/effect/rate_friction.h"
 #include "engine/effect/sink.h"
 #include "engine/effect/variation.h"
+#include "engine/effect/pin.h"
+#include "engine/effect/probe.h"
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
@@ -23,6 +26,9 @@ namespace repose {
 using Effects = std::tuple<Emitters,          // particles that begin
                            Sinks,             // and end
                            Gravity,           // v += dt g
+                           ForceFields,       // accelerations and winds of regions
+                           Pins,              // v* of held nodes
+                           Probes,            // asks solids for a log, so before them
                            Colliders,         // v* -> v-bar -> v-tilde: last of the node passes
                            Prestress,         // bodies begin under their weight
                            VolumeCorrection,  // around the return map, and around all that follows here

@@ -1,9 +1,11 @@
-// Repose: a collider whose shape has been built.
+// Repose: a collider whose shape has been built, and how it moves.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "engine/geometry/motion.h"
 #include "engine/geometry/shape.h"
 
 namespace repose {
@@ -21,8 +23,19 @@ struct Solid {
   bool hollow = false;  ///< the solid is all that lies outside the shape
   Contact contact = Contact::kSeparating;
   double friction = 0.0;
+  std::shared_ptr<const RigidMotion> motion;  ///< null where it rests
 
-  /// Signed distance to the solid, m, negative inside it; never more than the true distance.
+  /// The same as it stands at a time (s), at rest.
+  Solid at(double time) const {
+    Solid still = *this;
+    if (motion == nullptr) return still;
+    still.shape = std::make_shared<PlacedShape>(shape, motion->pose(time));
+    still.motion = nullptr;
+    return still;
+  }
+
+  /// Signed distance to the solid, m, negative inside it; never more than the true distance. Where it moves, x
+  /// is a point of the body, as its shape was placed.
   double distance(const Vec3& x) const {
     return hollow ? -shape->signed_distance(x) : shape->signed_distance(x);
   }
@@ -31,5 +44,11 @@ struct Solid {
     return hollow ? Vec3(-shape->normal(x, h)) : shape->normal(x, h);
   }
 };
+
+inline std::vector<Solid> solids_at(const std::vector<Solid>& solids, double time) {
+  std::vector<Solid> still;
+  for (const Solid& solid : solids) still.push_back(solid.at(time));
+  return still;
+}
 
 }  // namespace repose

@@ -30,6 +30,8 @@ Mat3 rotation_matrix(const Vec3& axis, double degrees) {
 Bounds PlacedShape::bounds() const {
   const Bounds inner = shape_->bounds();
   Bounds bounds;
+  if (!inner.lower.allFinite() || !inner.upper.allFinite())
+    return {bounds.upper, bounds.lower};  // all of space
   for (int k = 0; k < 8; ++k) {
     const Vec3 corner(k & 1 ? inner.upper[0] : inner.lower[0], k & 2 ? inner.upper[1] : inner.lower[1],
                       k & 4 ? inner.upper[2] : inner.lower[2]);

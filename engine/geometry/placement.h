@@ -16,6 +16,8 @@ struct Placement {
 
   Vec3 point(const Vec3& x) const { return rotation * x + translation; }
   Vec3 direction(const Vec3& x) const { return rotation * x; }
+  /// The point that is placed at x.
+  Vec3 own(const Vec3& x) const { return rotation.transpose() * (x - translation); }
 };
 
 /// Rotation by `degrees` about `axis` (any length but zero). Exact for quarter turns about a coordinate axis.
@@ -26,9 +28,9 @@ class PlacedShape : public Shape {
   PlacedShape(std::shared_ptr<const Shape> shape, Placement placement)
       : shape_(std::move(shape)), placement_(std::move(placement)) {}
 
-  double signed_distance(const Vec3& x) const override { return shape_->signed_distance(own(x)); }
+  double signed_distance(const Vec3& x) const override { return shape_->signed_distance(placement_.own(x)); }
   Vec3 normal(const Vec3& x, double h) const override {
-    return placement_.direction(shape_->normal(own(x), h));
+    return placement_.direction(shape_->normal(placement_.own(x), h));
   }
   Bounds bounds() const override;
   double volume() const override { return shape_->volume(); }
@@ -36,8 +38,6 @@ class PlacedShape : public Shape {
   TriangleMesh surface(double extent) const override;
 
  private:
-  Vec3 own(const Vec3& x) const { return placement_.rotation.transpose() * (x - placement_.translation); }
-
   std::shared_ptr<const Shape> shape_;
   Placement placement_;
 };

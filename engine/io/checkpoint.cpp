@@ -204,6 +204,8 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   if (auto written = write_chunk(*file, "counts", counts.data(), counts.size() * sizeof counts[0]); !written) {
     return written;
   }
+  const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
+  if (auto written = write_chunk(*file, "tallies", state.tallies.data(), tally_bytes); !written) return written;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     auto written =
         for_each_array(state.sets[k], k, [&](const std::string& name, const void* data, std::size_t bytes) {
@@ -233,6 +235,8 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   std::vector<Index3> owners(head->owners);
   if (auto read = reader->read("blocks", owners.data(), owners.size() * sizeof(Index3)); !read) return read;
   if (auto read = read_counts(*reader, state); !read) return read;
+  const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
+  if (auto read = reader->read("tallies", state.tallies.data(), tally_bytes); !read) return read;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     state.sets[k].begin.resize(head->owners + 1);
     auto read = for_each_array(state.sets[k], k, [&](const std::string& name, void* data, std::size_t bytes) {

@@ -266,7 +266,7 @@ void set_initial_speed(State<Real>& state) {
 
 StepLimits step_limits(const Scene& scene) {
   const TimeDescription& time = scene.time;
-  return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, 0.0, {}};
+  return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, {}};
 }
 
 template <class Real>
@@ -316,7 +316,10 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
     plan.gather.emplace_back();
     auto& passes = plan.gather[k];
     passes.push_back(gather_pass(plan, lattice));  // v and C, and the velocity that moves
-    passes.push_back(advance_pass(plan));          // x += dt v
+    for_each_effect(compilation.effects, [&](const auto& effect) {
+      if (effect.on()) effect.add_before_motion(assembly, k);
+    });
+    passes.push_back(advance_pass(plan));  // x += dt v
     for_each_effect(compilation.effects, [&](const auto& effect) {
       if (effect.on()) effect.add_after_motion(assembly, k);
     });
@@ -348,7 +351,15 @@ Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_p
     if (!shape)
       return Error{shape.error().kind, shape.error().text(),
                    scene.where("colliders." + collider.name + ".shape")};
-    solids.push_back({collider.name, *shape, collider.hollow, collider.contact, collider.friction});
+    Solid solid{collider.name, *shape, collider.hollow, collider.contact, collider.friction, nullptr};
+    if (collider.motion.given) {
+      auto motion = RigidMotion::make(collider.motion);
+      if (!motion)
+        return Error{motion.error().kind, motion.error().text(),
+                     scene.where("colliders." + collider.name + ".motion")};
+      solid.motion = *motion;
+    }
+    solids.push_back(std::move(solid));
   }
   return solids;
 }
@@ -366,11 +377,13 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   if (!solids) return solids.error();
   compiled.solids = std::move(*solids);
   Compilation<Real> compilation{scene, options, surroundings_of(scene, options), scene.effects, {}};
+  for (const Solid& solid : compiled.solids) compilation.surroundings.solids.push_back(solid.name);
   if (auto ready = prepare(compilation.effects, compilation.surroundings); !ready) return ready.error();
   if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
   set_initial_speed(state);
   compiled.plan = compile_plan(compilation, state, compiled.solids);
   if (auto valid = compiled.plan.validate(state); !valid) return valid.error();
+  state.tallies.assign(compiled.plan.tallies(), 0.0);
   return compiled;
 }
 

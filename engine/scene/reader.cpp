@@ -53,7 +53,7 @@ void check_mesh_path(const Json::Value& solid, const std::string& path, Complain
 }
 
 void check_mesh_paths(const Json::Value& root, Complaints& complaints) {
-  for (const char* key : {"bodies", "colliders", "emitters", "sinks"}) {
+  for (const char* key : {"bodies", "colliders", "emitters", "force_fields", "pins", "sinks", "wetting"}) {
     const Json::Value& list = root[key];
     if (!list.isArray()) continue;
     for (Json::ArrayIndex i = 0; i < list.size(); ++i) {

@@ -265,6 +265,15 @@ void turn_gravity(Scene& scene) {
   if (scene.up == UpAxis::kZ && acceleration == Gravity{}.acceleration) acceleration = Vec3(0.0, 0.0, -9.81);
 }
 
+/// Across plane strain nothing moves, solids neither.
+bool stays_in_plane(const MotionDescription& motion, int flat_axis) {
+  return std::all_of(motion.keys.begin(), motion.keys.end(), [flat_axis](const MotionKey& key) {
+    Vec3 across = key.rotation_axis.normalized();
+    across[flat_axis] = 0.0;
+    return key.translation[flat_axis] == 0.0 && (key.rotation_angle == 0.0 || across.norm() < 1e-9);
+  });
+}
+
 }  // namespace
 
 void describe(Fields& fields, Scene& scene) {
@@ -303,6 +312,11 @@ void describe(Fields& fields, Scene& scene) {
   fields.check(
       !scene.grid.plane_strain || scene.effect<Gravity>().acceleration[*scene.grid.plane_strain] == 0.0,
       "gravity", "acceleration must be zero along the flat axis (plane_strain)");
+  for (const Collider& collider : scene.effect<Colliders>().list) {
+    fields.check(
+        !scene.grid.plane_strain || stays_in_plane(collider.motion, *scene.grid.plane_strain), "colliders",
+        "motion of \"" + collider.name + "\" must stay in the plane of plane_strain and turn about its axis");
+  }
   fields.object("output", given, false, "what is written per frame",
                 [&](Fields& f) { describe_output(f, scene.output, scene.grid.spacing); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/effect/particle_energy.h"
+
 namespace repose {
 namespace {
 
@@ -19,18 +21,14 @@ void add_particle(const ParticleSet<Real>& set, std::size_t p, const Elasticity&
   Mat3 c;
   for (int axis = 0; axis < 3; ++axis) v[axis] = set.velocity[axis][p];
   for (int k = 0; k < kAffineComponents; ++k) c(k / 3, k % 3) = set.keeps_affine ? set.affine[k][p] : Real(0);
-  double eps[kStrainComponents];
-  for (int k = 0; k < kStrainComponents; ++k) eps[k] = set.strain[k][p];
-  const double trace = eps[0] + eps[3] + eps[5];
-  const double square = eps[0] * eps[0] + eps[3] * eps[3] + eps[5] * eps[5] +
-                        2.0 * (eps[1] * eps[1] + eps[2] * eps[2] + eps[4] * eps[4]);
+  const double trace = double(set.strain[0][p]) + double(set.strain[3][p]) + double(set.strain[5][p]);
+  const ParticleEnergy energy = particle_energy(set, p, elasticity, affine_inertia);
   ++sums.particles;
   sums.mass += mass;
   sums.volume += set.particle_volume * std::exp(trace);
-  sums.kinetic_energy += 0.5 * mass * v.squaredNorm();
-  sums.affine_energy += 0.5 * mass * affine_inertia * c.squaredNorm();
-  sums.elastic_energy +=
-      set.particle_volume * (elasticity.mu() * square + 0.5 * elasticity.lambda() * trace * trace);
+  sums.kinetic_energy += energy.kinetic;
+  sums.affine_energy += energy.affine;
+  sums.elastic_energy += energy.elastic;
   sums.momentum += mass * v;
   // B = C D; its axial part is the angular momentum that the particle carries within (Jiang et al. 2015).
   const Vec3 axial(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));

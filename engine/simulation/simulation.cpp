@@ -43,8 +43,12 @@ class SimulationOf final : public Simulation {
         state_(std::move(compiled.state)),
         stepper_(std::move(compiled.plan), threads) {
     stepper_.order_if_due(state_);
+    stepper_.begin_frame(state_);
     warnings_ = scene_warnings(scene_);
-    for (std::string& warning : seeding_warnings(solids_, state_, stepper_.threads())) {
+    for (std::string& warning : thin_solid_warnings(solids_, state_.spacing)) {
+      warnings_.push_back(std::move(warning));
+    }
+    for (std::string& warning : seeding_warnings(solids_at(solids_, 0.0), state_, stepper_.threads())) {
       warnings_.push_back(std::move(warning));
     }
   }
@@ -64,7 +68,9 @@ class SimulationOf final : public Simulation {
   PointCloud points(const PointsWanted& wanted) const override {
     return make_points(scene_, state_, *stepper_.plan().kernels, wanted);
   }
-  Diagnostics diagnose() override { return repose::diagnose(scene_, solids_, state_, stepper_.threads()); }
+  Diagnostics diagnose() override {
+    return repose::diagnose(scene_, solids_at(solids_, state_.counters.time), state_, stepper_.threads());
+  }
   LedgerReport ledger() const override { return ledger_report(scene_, state_); }
   std::uint64_t hash() const override { return state_hash(state_); }
   MemoryUse memory() const override {
@@ -75,10 +81,17 @@ class SimulationOf final : public Simulation {
   void reset_profile() override { stepper_.reset_profile(); }
   const std::optional<Offender>& offender() const override { return offender_; }
   std::vector<std::pair<std::string, PassDescription>> passes() const override;
+  std::vector<Measurement> measurements() const override {
+    std::vector<Measurement> list;
+    stepper_.plan().for_each_measure(state_.tallies.data(),
+                                     [&](const MeasurePass<Real>& measure, const double* tallies) {
+                                       if (measure.report) measure.report(state_, tallies, list);
+                                     });
+    return list;
+  }
   double longest_step() const override {
     const double no_frame = std::numeric_limits<double>::infinity();
-    return choose_step(stepper_.plan().limits, stepper_.plan().transfer, state_.spacing, Counters{}, no_frame)
-        .dt;
+    return next_step(stepper_.plan(), state_.spacing, Counters{}, no_frame).dt;
   }
   Target target() const override { return target_; }
   int threads() const override { return const_cast<Stepper<Real>&>(stepper_).threads().count(); }
@@ -139,6 +152,10 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   Counters& counters = state_.counters;
   FrameReport frame;
   frame.resumed = counters.time_in_frame > 0.0;
+  if (!frame.resumed) {
+    const CleanFloatingPoint clean;
+    stepper_.begin_frame(state_);
+  }
   frame.least_dt = std::numeric_limits<double>::infinity();
   const Profile before = stepper_.profile();
   const auto start = std::chrono::steady_clock::now();
@@ -185,9 +202,11 @@ std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes(
   };
   add("events", plan.events);
   add("order", plan.order);
+  add("each step", plan.prepare);
   for (std::size_t k = 0; k < plan.scatter.size(); ++k) add("scatter " + state_.sets[k].name, plan.scatter[k]);
   add("nodes", plan.nodes);
   for (std::size_t k = 0; k < plan.gather.size(); ++k) add("gather " + state_.sets[k].name, plan.gather[k]);
+  add("measure", plan.measures);
   return list;
 }
 

@@ -69,6 +69,9 @@ class Simulation {
   virtual const std::optional<Offender>& offender() const = 0;
   /// The passes of a step, in order, each with the phase it runs in.
   virtual std::vector<std::pair<std::string, PassDescription>> passes() const = 0;
+  /// What the scene's probes have measured: over the frame that was completed last, or since its begin where
+  /// steps went on from there; steps that end on no frame count on from the last one that did.
+  virtual std::vector<Measurement> measurements() const = 0;
   /// What the limits of the step allow while nothing moves, s.
   virtual double longest_step() const = 0;
   virtual Target target() const = 0;

@@ -69,6 +69,21 @@ std::string inside_text(const ParticleSet<Real>& set, const Inside& inside, doub
          "; solids do not push out what starts within them, so move one of the two";
 }
 
+/// Whether some point of a box of half diagonal `half` about x lies as deep in the solid as `depth` (m). Depth
+/// changes no faster than place, so most boxes are done with by one look.
+bool reaches_depth(const Solid& solid, const Vec3& x, const Vec3& half, double depth, double finest) {
+  const double here = -solid.distance(x);
+  if (here >= depth) return true;
+  if (here + half.norm() < depth || half.norm() < finest) return false;
+  int axis = 0;
+  half.maxCoeff(&axis);
+  Vec3 side = Vec3::Zero(), quarter = half;
+  quarter[axis] *= 0.5;
+  side[axis] = quarter[axis];
+  return reaches_depth(solid, x - side, quarter, depth, finest) ||
+         reaches_depth(solid, x + side, quarter, depth, finest);
+}
+
 template <class Real>
 struct Fastest {
   const ParticleSet<Real>* set = nullptr;
@@ -107,6 +122,26 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
     warnings.push_back("materials." + material.name + ": with friction_angle " + angle +
                        " and this cone_matching the sand can never yield in plane strain; see docs/math.md on "
                        "cone matching");
+  }
+  return warnings;
+}
+
+std::vector<std::string> thin_solid_warnings(const std::vector<Solid>& solids, double spacing) {
+  constexpr double kLeastCells = 2.0;
+  std::vector<std::string> warnings;
+  for (const Solid& solid : solids) {
+    const Bounds bounds = solid.shape->bounds();
+    const bool endless = !bounds.lower.allFinite() || !bounds.upper.allFinite();
+    if (solid.motion == nullptr || solid.hollow || endless) continue;
+    // A tenth of a cell is let pass: a wall of just two cells is meant well, and a mesh errs by as much.
+    const double depth = (0.5 * kLeastCells - 0.1) * spacing;
+    if (reaches_depth(solid, 0.5 * (bounds.lower + bounds.upper), 0.5 * (bounds.upper - bounds.lower), depth,
+                      0.05 * spacing))
+      continue;
+    warnings.push_back(
+        "colliders." + solid.name +
+        ": moves and is thinner than two cells, so that hardly a node lies within it and material "
+        "passes through; make it thicker or grid.spacing finer");
   }
   return warnings;
 }

@@ -51,6 +51,7 @@ struct State {
   std::vector<ParticleSet<Real>> sets;
   Counters counters;
   Ledger ledger;
+  std::vector<double> tallies;  ///< running sums of what is measured; saved, but no part of the state's hash
 
   BlockGrid grid;
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar

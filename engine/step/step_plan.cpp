@@ -35,6 +35,7 @@ Result<void> StepPlan<Real>::validate(const State<Real>& state) const {
   if (auto result = follow_all(events, at_events); !result) return result;
   std::set<std::string> after_order = kInitial;
   if (auto result = follow_all(order, after_order); !result) return result;
+  if (auto result = follow_all(prepare, after_order); !result) return result;
   const auto with_channels = [&state](std::set<std::string> known, std::size_t set) {
     if (set >= state.sets.size()) return known;
     for (const auto& channel : state.sets[set].extra) known.insert(channel.name);
@@ -54,6 +55,7 @@ Result<void> StepPlan<Real>::validate(const State<Real>& state) const {
     std::set<std::string> known = with_channels(on_nodes, k);
     if (auto result = follow_all(gather[k], known); !result) return result;
   }
+  if (auto result = follow_all(measures, on_nodes); !result) return result;
   return {};
 }
 

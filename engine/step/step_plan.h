@@ -52,6 +52,7 @@ struct Chunk {
   const Real* moving_velocity[3] = {};                  ///< what moves positions, m/s; set by the gather
   const Real* moving_gradient[kAffineComponents] = {};  ///< what strains, 1/s
   Motion<Real> motion{};
+  std::size_t owner = 0;  ///< the block, as the grid counts those that hold particles
 
   /// Position in metres of a point `offset` cells from the block's origin.
   Vec3 world(const Vec3& offset) const { return origin + spacing * offset; }
@@ -109,11 +110,38 @@ struct EventPass {
   std::function<void(State<Real>&, ParticleEdit<Real>& edit)> run;  ///< keeps the ledger
 };
 
+/// What changes with time and is the same for all blocks, such as where solids stand: before the node passes,
+/// once for each try of a step.
+template <class Real>
+struct PreparePass {
+  PassDescription description;
+  std::function<void(State<Real>&, Real dt)> run;
+};
+
+/// One figure of a probe.
+struct Measurement {
+  std::string probe;     ///< its name in the scene
+  std::string quantity;  ///< such as "force.x"
+  std::string unit;      ///< empty for a number of things
+  double value = 0.0;    ///< not a number where there is none
+};
+
+/// Measures while frames pass and changes nothing. What it sums over steps it keeps in its part of
+/// State::tallies, so that a frame goes on where it was interrupted; a hook that is not needed is left empty.
+template <class Real>
+struct MeasurePass {
+  PassDescription description;
+  std::size_t tallies = 0;  ///< how many numbers it keeps
+  std::function<void(const State<Real>&, double* tallies)> begin_frame;
+  std::function<void(const State<Real>&, double dt, double* tallies)>
+      after_step;  ///< of accepted steps, dt in s
+  std::function<void(const State<Real>&, const double* tallies, std::vector<Measurement>&)> report;
+};
+
 /// What bounds the step (see time_step.h); per set, in the order of the state's sets.
 struct StepLimits {
   double max_step = 1.0;  ///< s
   double cfl = 0.6, sound = 0.5, isolated = 0.9, strain = 0.5;
-  double solid_speed = 0.0;  ///< m/s, fastest collider
   struct Stiffness {
     double sound_speed;     ///< m/s
     double dilation_speed;  ///< sqrt((3 lambda + 2 mu)/rho), m/s: the pulse of a particle alone
@@ -157,9 +185,31 @@ struct StepPlan {
 
   std::vector<EventPass<Real>> events;
   std::vector<OrderPass<Real>> order;
+  std::vector<PreparePass<Real>> prepare;
   std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set
   std::vector<NodePass<Real>> nodes;
   std::vector<std::vector<ParticlePass<Real>>> gather;  ///< per set
+
+  std::vector<MeasurePass<Real>> measures;
+
+  /// How fast, in m/s, what is no particle moves at most between two times (s): it must not cross more cells in
+  /// a step than particles may.
+  std::vector<std::function<double(double from, double to)>> speeds;
+
+  /// Room for the tallies of all measures.
+  std::size_t tallies() const {
+    std::size_t sum = 0;
+    for (const auto& measure : measures) sum += measure.tallies;
+    return sum;
+  }
+  /// Calls visit(measure, tallies) with each measure and its part of `tallies`.
+  template <class Number, class Visit>
+  void for_each_measure(Number* tallies, Visit visit) const {
+    for (const auto& measure : measures) {
+      visit(measure, tallies);
+      tallies += measure.tallies;
+    }
+  }
 
   /// Refuses a plan in which a pass reads what nothing before it provides, naming pass and quantity. `state`
   /// holds the sets, whose channels are there from the start.

@@ -66,6 +66,13 @@ Result<void> Stepper<Real>::end_frame(State<Real>& state) {
 }
 
 template <class Real>
+void Stepper<Real>::begin_frame(State<Real>& state) {
+  plan_.for_each_measure(state.tallies.data(), [&](const MeasurePass<Real>& measure, double* tallies) {
+    if (measure.begin_frame) measure.begin_frame(state, tallies);
+  });
+}
+
+template <class Real>
 StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   const CleanFloatingPoint clean;
   if (auto events = carry_out_events(state, Moment::kBeforeStep); !events) {
@@ -74,7 +81,7 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     return report;
   }
   order_if_due(state);
-  const StepSize size = choose_step(plan_.limits, plan_.transfer, state.spacing, state.counters, remaining);
+  const StepSize size = next_step(plan_, state.spacing, state.counters, remaining);
   StepReport report;
   report.limit = size.limit;
   if (!(size.dt >= kLeastShare * plan_.limits.max_step)) {  // also when a speed is not finite
@@ -86,12 +93,16 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     report.dt = std::ldexp(size.dt, -report.redone);
     const Real dt = static_cast<Real>(report.dt);
     scatter(state, dt);
+    for (const auto& pass : plan_.prepare) pass.run(state, dt);
     update_nodes(state, dt);
     report.offender = inspect(state, dt);
     if (report.offender) continue;
     gather(state, dt);
     finish(state, dt);
     state.counters.last_dt = report.dt;
+    plan_.for_each_measure(state.tallies.data(), [&](const MeasurePass<Real>& measure, double* tallies) {
+      if (measure.after_step) measure.after_step(state, report.dt, tallies);
+    });
     report.accepted = true;
     return report;
   }

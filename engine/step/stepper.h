@@ -54,6 +54,8 @@ class Stepper {
   std::size_t bytes() const;
   /// Memory of the threads, whatever the scene.
   std::size_t scratch_bytes() const;
+  /// Lets what measures begin anew.
+  void begin_frame(State<Real>& state);
   /// Brings the order up to date, if it is due; a step does so by itself.
   void order_if_due(State<Real>& state);
   /// Carries out the events that are due, then brings the order up to date if there were any; a step does the
@@ -112,6 +114,7 @@ void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, std::s
                         state.counters.time,
                         origin};
       const std::size_t after = end - first > kChunk ? first + kChunk : set.begin[next];
+      chunk.owner = owner;
       chunk.particles.ahead = static_cast<std::ptrdiff_t>(after) - static_cast<std::ptrdiff_t>(first);
       visit(k, chunk);
     }

@@ -31,8 +31,7 @@ StepSize choose_step(const StepLimits& limits, const TransferChoice& transfer, d
   const auto bound = [&step](double dt, Limit limit) {
     if (dt < step.dt) step = {dt, limit, dt};
   };
-  const double speed = std::max(counters.max_speed, limits.solid_speed);
-  if (speed > 0.0) bound(limits.cfl * spacing / speed, Limit::kVelocity);
+  if (counters.max_speed > 0.0) bound(limits.cfl * spacing / counters.max_speed, Limit::kVelocity);
   if (counters.max_gradient > 0.0) bound(limits.strain / counters.max_gradient, Limit::kStrain);
   const double feedback = isolated_cells(transfer);
   for (const auto& set : limits.sets) {

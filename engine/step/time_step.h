@@ -11,6 +11,8 @@
 //   frame     the step ends on the frame; steps of a frame's remainder are equal
 #pragma once
 
+#include <algorithm>
+
 #include "engine/state/state.h"
 #include "engine/step/step_plan.h"
 
@@ -29,5 +31,17 @@ struct StepSize {
 /// no frame).
 StepSize choose_step(const StepLimits& limits, const TransferChoice& transfer, double spacing,
                      const Counters& counters, double remaining);
+
+/// The same for a plan, whose solids may move: their speed counts as that of particles does.
+template <class Real>
+StepSize next_step(const StepPlan<Real>& plan, double spacing, Counters counters, double remaining) {
+  StepSize step = choose_step(plan.limits, plan.transfer, spacing, counters, remaining);
+  if (plan.speeds.empty()) return step;
+  // No step is longer than that of particles alone, so no later speed matters.
+  for (const auto& speed : plan.speeds) {
+    counters.max_speed = std::max(counters.max_speed, speed(counters.time, counters.time + step.dt));
+  }
+  return choose_step(plan.limits, plan.transfer, spacing, counters, remaining);
+}
 
 }  // namespace repose

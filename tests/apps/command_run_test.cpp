@@ -1,6 +1,7 @@
 // Repose tests: `repose run`: what it leaves, what it says of itself, and that threads change no bit of it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -142,6 +143,28 @@ TEST_F(CommandRun, SurfaceOfOneAndTwoThreads_SameBytes) {
     EXPECT_GT(bytes("1").size(), 1000u);
     EXPECT_EQ(bytes("1"), bytes("2")) << name;
   }
+}
+
+TEST_F(CommandRun, Probes_AreInTheLogAndInATableOfAllFrames) {
+  const std::string scene = tiny_scene(
+      R"(, "probes": [{"name": "door", "type": "flow", "point": [0, 0.05, 0]}, {"name": "all", "type": "energy"},
+                    {"name": "top", "type": "surface", "from": [5, 0, 0], "to": [5.01, 0, 0]}])");
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "2"}).code, 0);
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "4", "--resume"}).code, 0);
+  const Json::Value row = read_json(path("out/run.json"))["frames"][3];
+  EXPECT_TRUE(row["probes"]["door"]["mass_back"].isDouble());
+  EXPECT_EQ(row["probes"]["all"]["kinetic"].asDouble(), row["energy"]["kinetic"].asDouble());
+  EXPECT_TRUE(row["probes"]["top"]["height.0"].isNull()) << "nothing lies there";
+  std::ifstream file(path("out/tiny.probes.csv"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_THAT(lines[0], HasSubstr("frame,time [s],door.particles_forth,door.mass_forth [kg],"));
+  EXPECT_THAT(lines[0], HasSubstr(",all.dissipated [J],top.height.0 [m]"));
+  EXPECT_EQ(lines[4].substr(0, 7), "4,0.04,");
+  EXPECT_EQ(std::count(lines[4].begin(), lines[4].end(), ','),
+            std::count(lines[0].begin(), lines[0].end(), ','));
+  EXPECT_EQ(lines[4].back(), ',') << "an empty cell where there is no number";
 }
 
 TEST_F(CommandRun, FramesFromTo_WritesOnlyThose) {

@@ -48,9 +48,10 @@ TEST(SceneSchema, Root_ListsEveryKeyAndNoOther) {
   const Json::Value schema = parsed_schema();
   EXPECT_EQ(schema["$schema"].asString(), "https://json-schema.org/draft/2020-12/schema");
   EXPECT_EQ(schema["properties"].getMemberNames(),
-            (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "emitters", "gravity", "grid",
-                                      "materials", "name", "output", "parameters", "prestress", "repose",
-                                      "sinks", "time", "up", "volume_correction", "wetting"}));
+            (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "emitters", "force_fields",
+                                      "gravity", "grid", "materials", "name", "output", "parameters", "pins",
+                                      "prestress", "probes", "repose", "sinks", "time", "up",
+                                      "volume_correction", "wetting"}));
   EXPECT_FALSE(schema["additionalProperties"].asBool());
   std::set<std::string> required;
   for (const Json::Value& key : schema["required"]) required.insert(key.asString());

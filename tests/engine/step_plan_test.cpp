@@ -86,10 +86,10 @@ TEST(StepPlan, OrderPasses_ProvideForAll) {
 
 /// What a scene compiles to, as lists of names.
 struct Names {
-  std::vector<std::string> events, order, nodes;
+  std::vector<std::string> events, order, prepare, nodes, measures;
   std::vector<std::vector<std::string>> scatter, gather;
   std::vector<std::vector<std::string>> channels;  ///< per set, beyond those that every particle has
-  std::size_t bytes = 0;
+  std::size_t speeds = 0, tallies = 0, bytes = 0;
 };
 
 template <class Passes>
@@ -109,13 +109,15 @@ Names compile(const std::vector<std::string>& overrides) {
   EXPECT_TRUE(scene) << (scene ? "" : scene.error().text());
   const auto compiled = compile_scene<float>(*scene, {});
   EXPECT_TRUE(compiled) << (compiled ? "" : compiled.error().text());
-  Names names{names_of(compiled->plan.events),
-              names_of(compiled->plan.order),
-              names_of(compiled->plan.nodes),
-              {},
-              {},
-              {},
-              bytes_per_particle(*scene)};
+  Names names;
+  names.events = names_of(compiled->plan.events);
+  names.order = names_of(compiled->plan.order);
+  names.prepare = names_of(compiled->plan.prepare);
+  names.nodes = names_of(compiled->plan.nodes);
+  names.measures = names_of(compiled->plan.measures);
+  names.speeds = compiled->plan.speeds.size();
+  names.tallies = compiled->state.tallies.size();
+  names.bytes = bytes_per_particle(*scene);
   for (const auto& passes : compiled->plan.scatter) names.scatter.push_back(names_of(passes));
   for (const auto& passes : compiled->plan.gather) names.gather.push_back(names_of(passes));
   for (const auto& set : compiled->state.sets) {
@@ -137,6 +139,9 @@ TEST(CompiledPlan, SceneThatNamesNothing_IsTheCore) {
   EXPECT_THAT(names.nodes, ElementsAre("node velocity"));
   EXPECT_THAT(names.gather, ElementsAre(ElementsAre("gather", "advance", "trial strain", "return map")));
   EXPECT_THAT(names.channels, ElementsAre(IsEmpty()));
+  EXPECT_THAT(names.prepare, IsEmpty());
+  EXPECT_THAT(names.measures, IsEmpty());
+  EXPECT_EQ(names.speeds + names.tallies, 0u);
 }
 
 TEST(CompiledPlan, Gravity_IsOneNodePass) {
@@ -147,6 +152,51 @@ TEST(CompiledPlan, Collider_IsOneOrderPassAndOneNodePass) {
   const Names names = compile({R"json(colliders=[{"name": "floor", "shape": {"type": "plane"}}])json"});
   EXPECT_THAT(names.order, ElementsAre("nodes near solids"));
   EXPECT_THAT(names.nodes, ElementsAre("node velocity", "collide, friction"));
+}
+
+constexpr const char* kFloor = R"json(colliders=[{"name": "floor", "shape": {"type": "plane"}}])json";
+
+TEST(CompiledPlan, ColliderAtRest_PreparesNothingAndBoundsNoStep) {
+  const Names names = compile({kFloor});
+  EXPECT_THAT(names.prepare, IsEmpty());
+  EXPECT_EQ(names.speeds, 0u);
+}
+
+TEST(CompiledPlan, ColliderThatMoves_PreparesPosesAndBoundsTheStep) {
+  const Names names = compile({R"json(colliders=[
+    {"name": "floor", "shape": {"type": "plane"}, "motion": {"keys": [{"time": 0}]}}])json"});
+  EXPECT_THAT(names.prepare, ElementsAre("poses of solids"));
+  EXPECT_THAT(names.nodes, ElementsAre("node velocity", "collide, friction"));
+  EXPECT_EQ(names.speeds, 1u);
+}
+
+TEST(CompiledPlan, Pin_IsOneOrderPassAndOneNodePassBeforeSolids) {
+  const Names names =
+      compile({kFloor, R"json(pins=[{"name": "a", "shape": {"type": "sphere", "radius": 1}}])json"});
+  EXPECT_THAT(names.order, ElementsAre("pinned nodes", "nodes near solids"));
+  EXPECT_THAT(names.nodes, ElementsAre("node velocity", "pins", "collide, friction"));
+}
+
+TEST(CompiledPlan, ProbeOfFlow_CountsAroundTheMotion) {
+  const Names without = compile({}), with = compile({R"json(probes=[{"name": "door", "type": "flow"}])json"});
+  EXPECT_THAT(with.order, ElementsAre("blocks near planes of flow"));
+  EXPECT_THAT(with.gather, ElementsAre(ElementsAre("gather", "sides of planes", "advance", "count flow",
+                                                   "trial strain", "return map")));
+  EXPECT_THAT(with.measures, ElementsAre("probe door"));
+  EXPECT_EQ(with.nodes, without.nodes);
+  EXPECT_EQ(with.bytes, without.bytes);
+  EXPECT_EQ(with.tallies, 4u);
+}
+
+TEST(CompiledPlan, OtherProbes_AreNoPassOfTheStep) {
+  const Names without = compile({kFloor}),
+              with = compile({kFloor, R"json(probes=[{"name": "e", "type": "energy"},
+    {"name": "f", "type": "force", "collider": "floor"},
+    {"name": "s", "type": "surface", "from": [0, 0, 0], "to": [1, 0, 0]}])json"});
+  EXPECT_THAT(with.measures, ElementsAre("probe e", "probe f", "probe s"));
+  EXPECT_EQ(with.order, without.order);
+  EXPECT_EQ(with.nodes, without.nodes);
+  EXPECT_EQ(with.gather, without.gather);
 }
 
 TEST(CompiledPlan, CollideComesAfterGravity) {
@@ -196,7 +246,7 @@ TEST(CompiledPlan, Elastic_HasNoReturnMapAndNoVolumeToCorrect) {
   EXPECT_THAT(names.channels, ElementsAre(ElementsAre("volume_gained"), IsEmpty()));
 }
 
-TEST(CompiledPlan, EffectStatus_AgreesWithThePasses) {
+TEST(CompiledPlan, EffectStatus_AgreesWithTheScene) {
   const auto scene = read_scene(REPOSE_SCENES "/hourglass.json");
   ASSERT_TRUE(scene);
   for (const EffectStatus& effect : effect_status(*scene)) {

@@ -26,6 +26,7 @@ template <class Real>
 State<Real> make_state(bool filled) {
   State<Real> state;
   state.spacing = 0.1;
+  state.tallies.assign(3, 0.0);
   const std::vector<Index3> owners{{0, 0, 0}, {1, 0, 0}, {-3, 7, 2}, {250000, -250000, 1}, {0, 0, 1}};
   if (filled) state.grid.build(owners, state.topology);
   for (int k = 0; k < 2; ++k) {
@@ -46,6 +47,7 @@ State<Real> make_state(bool filled) {
     for (std::size_t p = 0; p < set.count; ++p) set.id[p] = static_cast<std::uint32_t>(1000 * k + 7 * p);
   }
   if (filled) {
+    state.tallies = {0.25, -7.0, 1e300};
     state.counters = {3, 271, 0.0123, 0.1373, 1e-4, 2.5, 17.0, 2, 991, 5, 8, 0.01};
   }
   return state;
@@ -120,6 +122,7 @@ TYPED_TEST(Checkpoint, SavedAndLoaded_IsTheSameBitForBit) {
     EXPECT_EQ(c, 21u + 2u * k);
     EXPECT_EQ(std::memcmp(loaded.sets[k].id.data(), saved.sets[k].id.data(), kParticles * 4), 0);
   }
+  EXPECT_EQ(loaded.tallies, saved.tallies);
   EXPECT_EQ(loaded.counters.frame, saved.counters.frame);
   EXPECT_EQ(loaded.counters.step, saved.counters.step);
   EXPECT_EQ(loaded.counters.time_in_frame, saved.counters.time_in_frame);

@@ -96,9 +96,13 @@ TEST(TimeStep, FastMatterOrFastSolid_VelocityBinds) {
   EXPECT_EQ(of_matter.limit, Limit::kVelocity);
   EXPECT_STREQ(limit_name(of_matter.limit), "velocity");
   EXPECT_DOUBLE_EQ(of_matter.dt, 0.6 * kSpacing / 50.0);
-  StepLimits given = limits();
-  given.solid_speed = 100.0;
-  EXPECT_DOUBLE_EQ(choose(given, fast).dt, 0.6 * kSpacing / 100.0);
+  StepPlan<float> plan;
+  plan.limits = limits();
+  plan.transfer = TransferChoice{0, 0};
+  plan.speeds.push_back([](double from, double to) { return from <= 0.0 && to > 0.0 ? 100.0 : 0.0; });
+  EXPECT_DOUBLE_EQ(next_step(plan, kSpacing, fast, kNoFrame).dt, 0.6 * kSpacing / 100.0);
+  fast.time = 1.0;
+  EXPECT_DOUBLE_EQ(next_step(plan, kSpacing, fast, kNoFrame).dt, of_matter.dt) << "no solid is fast by then";
 }
 
 TEST(TimeStep, SteepGradient_StrainBinds) {

@@ -1,0 +1,63 @@
+// Repose: what solids did to the material in a step, for effects that measure it. Nobody keeps one unless a
+// scene asks. Each block sums for itself, in double, and blocks are added in their order, so threads change
+// nothing; a try of a step that is refused is overwritten by the next one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/vector.h"
+
+namespace repose {
+
+/// Of one solid on the material, in one step.
+struct ContactSums {
+  Vec3 impulse{0, 0, 0};  ///< N s
+  Vec3 moment{0, 0, 0};   ///< of the impulse about the scene's origin, N m s
+  double work = 0.0;      ///< impulse times the velocity of the solid where it acts, J
+
+  void add(const Vec3& x, const Vec3& given, const Vec3& wall) {
+    impulse += given;
+    moment += x.cross(given);
+    work += given.dot(wall);
+  }
+  void add(const ContactSums& other) {
+    impulse += other.impulse;
+    moment += other.moment;
+    work += other.work;
+  }
+};
+
+class ContactLog {
+ public:
+  explicit ContactLog(std::size_t solids) : solids_(solids) {}
+
+  /// Gives rows to the blocks that `near` says, of all blocks of the grid.
+  template <class Near>
+  void follow_topology(std::size_t blocks, Near near) {
+    row_.assign(blocks, -1);
+    std::int32_t rows = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      if (near(b)) row_[b] = rows++;
+    }
+    sums_.assign(static_cast<std::size_t>(rows) * solids_, ContactSums());
+  }
+
+  /// One entry per solid, of a block that has a row.
+  ContactSums* row(std::size_t block) { return sums_.data() + static_cast<std::size_t>(row_[block]) * solids_; }
+  std::size_t solids() const { return solids_; }
+
+  /// Of all blocks.
+  ContactSums total(std::size_t solid) const {
+    ContactSums all;
+    for (std::size_t k = solid; k < sums_.size(); k += solids_) all.add(sums_[k]);
+    return all;
+  }
+
+ private:
+  std::size_t solids_;
+  std::vector<std::int32_t> row_;  // per block; -1 where no solid is near
+  std::vector<ContactSums> sums_;  // rows in the order of blocks
+};
+
+}  // namespace repose

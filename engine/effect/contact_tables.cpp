@@ -1,0 +1,354 @@
+#include "engine/effect/contact_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace repose {
+namespace {
+
+/// How far a moving solid may go before its list is made anew: a block, so that lists last for several steps
+/// and hold few blocks too many.
+constexpr double kMarginCells = 4.0;
+
+bool has_friction(const Solid& solid) {
+  return solid.friction > 0.0 && solid.contact != Contact::kSticky;
+}
+
+Vec3 corner(const Bounds& bounds, int k) {
+  return {k & 1 ? bounds.upper[0] : bounds.lower[0], k & 2 ? bounds.upper[1] : bounds.lower[1],
+          k & 4 ? bounds.upper[2] : bounds.lower[2]};
+}
+
+double farthest(const Bounds& bounds, const Vec3& from) {
+  double most = 0.0;
+  for (int k = 0; k < 8; ++k) most = std::max(most, (corner(bounds, k) - from).norm());
+  return most;
+}
+
+/// How far a point of the bounds may be moved from one pose to another, as the body sees it. The distance is a
+/// convex function of the point, so it is largest at a corner.
+double drift(const Bounds& bounds, const Placement& from, const Placement& to) {
+  double most = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    most = std::max(most, (from.own(corner(bounds, k)) - to.own(corner(bounds, k))).norm());
+  }
+  return most;
+}
+
+/// Material of plane strain lies in the plane through the origin; the single node across it stands for that
+/// plane wherever it is.
+Vec3 in_plane(Vec3 x, int flat_axis) {
+  if (flat_axis >= 0) x[flat_axis] = 0.0;
+  return x;
+}
+
+}  // namespace
+
+template <class Real>
+struct ContactTables<Real>::NoRecord {
+  void before(const Real*) {}
+  void after(std::size_t, const Real*, const Real*) {}
+};
+
+template <class Real>
+struct ContactTables<Real>::Recorder {
+  ContactSums* sums;
+  double mass;
+  Vec3 x;
+  Vec3 start = Vec3::Zero();
+
+  static Vec3 vector(const Real* v) { return {double(v[0]), double(v[1]), double(v[2])}; }
+  void before(const Real* v) { start = vector(v); }
+  void after(std::size_t solid, const Real* wall, const Real* v) {
+    const Vec3 moves = wall == nullptr ? Vec3(0, 0, 0) : vector(wall);
+    sums[solid].add(x, mass * (vector(v) - start), moves);
+  }
+};
+
+template <class Real>
+ContactTables<Real>::ContactTables(std::vector<Solid> solids, std::shared_ptr<ContactLog> log)
+    : solids_(std::move(solids)), log_(std::move(log)) {
+  friction_ = std::any_of(solids_.begin(), solids_.end(), has_friction);
+  for (std::size_t k = 0; k < solids_.size(); ++k) {
+    if (solids_[k].motion == nullptr) continue;
+    const Bounds body = solids_[k].shape->bounds();
+    const bool finite = body.lower.allFinite() && body.upper.allFinite();
+    const double radius =
+        finite ? farthest(body, solids_[k].motion->pivot()) : std::numeric_limits<double>::infinity();
+    moving_.push_back({k, radius, {}, {}, {}, false});
+  }
+}
+
+/// How far from its middle a block may feel a solid: half the diagonal of its nodes, the cell that a node may
+/// be predicted to move along each axis, its own reach.
+template <class Real>
+double ContactTables<Real>::reach(const State<Real>& state) const {
+  return ((1.5 + 1.0) * std::sqrt(3.0) + kNodeReach) * state.spacing;
+}
+
+template <class Real>
+typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const State<Real>& state,
+                                                                       const Index3& block) const {
+  const int flat = state.topology.flat_axis;
+  NearSolids near;
+  for (std::size_t k = 0; k < solids_.size(); ++k) {
+    if (solids_[k].motion != nullptr) continue;
+    if (solids_[k].distance(in_plane(state.world(block, {1.5, 1.5, 1.5}), flat)) > reach(state)) continue;
+    Near entry{k, {}};
+    for (int node = 0; node < kBlockNodes; ++node) {
+      const Vec3 x =
+          in_plane(state.world(block, {double(node / 16), double(node / 4 % 4), double(node % 4)}), flat);
+      const Vec3 normal = in_plane(solids_[k].normal(x, 0.25 * state.spacing), flat);
+      NodeContact<Real>& contact = entry.nodes[static_cast<std::size_t>(node)];
+      contact.distance = static_cast<Real>(solids_[k].distance(x) - kNodeReach * state.spacing);
+      for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);
+    }
+    near.push_back(entry);
+  }
+  return near;
+}
+
+template <class Real>
+void ContactTables<Real>::follow_topology(State<Real>& state) {
+  spacing_ = state.spacing;
+  flat_axis_ = state.topology.flat_axis;
+  const auto blocks = state.grid.blocks();
+  of_block_.assign(blocks.size(), nullptr);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    auto found = seen_.find(blocks[b]);
+    if (found == seen_.end()) found = seen_.emplace(blocks[b], tabulate(state, blocks[b])).first;
+    if (!found->second.empty()) of_block_[b] = &found->second;
+  }
+  if (any_moves()) {
+    find_bounds(state);
+    for (Moving& moving : moving_) {
+      moving.listed = solids_[moving.solid].motion->pose(state.counters.time);
+    }
+    list_moving(state);
+  }
+  share_out(state);
+}
+
+template <class Real>
+void ContactTables<Real>::find_bounds(const State<Real>& state) {
+  bounds_ = Bounds();
+  for (const Index3& block : state.grid.blocks()) {
+    bounds_.lower = bounds_.lower.cwiseMin(in_plane(state.world(block, {0, 0, 0}), flat_axis_));
+    bounds_.upper = bounds_.upper.cwiseMax(in_plane(state.world(block, {3, 3, 3}), flat_axis_));
+  }
+}
+
+template <class Real>
+void ContactTables<Real>::list_moving(const State<Real>& state) {
+  const double far = reach(state) + kMarginCells * state.spacing;
+  listed_.clear();
+  listed_begin_.assign(1, 0);
+  for (const Index3& block : state.grid.blocks()) {
+    const Vec3 middle = in_plane(state.world(block, {1.5, 1.5, 1.5}), flat_axis_);
+    for (std::uint32_t k = 0; k < moving_.size(); ++k) {
+      if (solids_[moving_[k].solid].distance(moving_[k].listed.own(middle)) <= far) listed_.push_back(k);
+    }
+    listed_begin_.push_back(static_cast<std::uint32_t>(listed_.size()));
+  }
+}
+
+template <class Real>
+bool ContactTables<Real>::rubs(std::size_t block) const {
+  if (of_block_[block] != nullptr) {
+    for (const Near& near : *of_block_[block]) {
+      if (has_friction(solids_[near.solid])) return true;
+    }
+  }
+  if (!any_moves()) return false;
+  for (std::size_t i = listed_begin_[block]; i < listed_begin_[block + 1]; ++i) {
+    if (has_friction(solids_[moving_[listed_[i]].solid])) return true;
+  }
+  return false;
+}
+
+/// Room for v-tilde where there is friction, and for what is recorded.
+template <class Real>
+void ContactTables<Real>::share_out(State<Real>& state) {
+  const std::size_t blocks = state.grid.size();
+  state.after_friction.slot.assign(friction_ ? blocks : 0, -1);
+  std::int32_t slots = 0;
+  for (std::size_t b = 0; friction_ && b < blocks; ++b) {
+    if (rubs(b)) state.after_friction.slot[b] = slots++;
+  }
+  state.after_friction.field.resize(static_cast<std::size_t>(slots));
+  state.after_friction.live.assign(static_cast<std::size_t>(slots), 0);
+  if (log_ == nullptr) return;
+  log_->follow_topology(blocks, [this](std::size_t b) {
+    return of_block_[b] != nullptr || (any_moves() && listed_begin_[b] < listed_begin_[b + 1]);
+  });
+}
+
+template <class Real>
+void ContactTables<Real>::prepare(State<Real>& state, Real dt) {
+  const double time = state.counters.time;
+  bool used_up = false;
+  for (Moving& moving : moving_) {
+    const RigidMotion& motion = *solids_[moving.solid].motion;
+    moving.begin = motion.pose(time);
+    moving.end = motion.pose(time + static_cast<double>(dt));
+    moving.still =
+        moving.begin.rotation == moving.end.rotation && moving.begin.translation == moving.end.translation;
+    used_up = used_up || drift(bounds_, moving.listed, moving.end) > kMarginCells * state.spacing;
+  }
+  if (!used_up) return;
+  for (Moving& moving : moving_) moving.listed = moving.end;
+  list_moving(state);
+  share_out(state);
+}
+
+template <class Real>
+double ContactTables<Real>::fastest(double from, double to) const {
+  double most = 0.0;
+  for (const Moving& moving : moving_) {
+    const RigidMotion& motion = *solids_[moving.solid].motion;
+    const Vec3 pivot = motion.pose(from).point(motion.pivot());
+    const double radius = std::min(moving.radius, farthest(bounds_, pivot));
+    most = std::max(most, motion.fastest(from, to, radius));
+  }
+  return most;
+}
+
+/// The solids near a block, in the order of the scene.
+template <class Real>
+std::size_t ContactTables<Real>::find_touches(const NodeBlock<Real>& block, Touch* touches) const {
+  std::size_t count = 0;
+  const auto add = [&](const Touch& touch) {
+    REPOSE_ASSERT(count < kMost);
+    touches[count++] = touch;
+  };
+  if (const NearSolids* near = of_block_[block.block]) {
+    for (const Near& solid : *near) add({solid.solid, solid.nodes.data(), nullptr});
+  }
+  if (!any_moves()) return count;
+  const State<Real>& state = block.state;
+  for (std::size_t i = listed_begin_[block.block]; i < listed_begin_[block.block + 1]; ++i) {
+    const Moving& moving = moving_[listed_[i]];
+    const Vec3 middle = in_plane(state.world(state.grid.blocks()[block.block], {1.5, 1.5, 1.5}), flat_axis_);
+    if (solids_[moving.solid].distance(moving.end.own(middle)) > reach(state)) continue;
+    add({moving.solid, nullptr, &moving});
+  }
+  std::sort(touches, touches + count, [](const Touch& a, const Touch& b) { return a.solid < b.solid; });
+  return count;
+}
+
+/// A node beside a solid that moves; `wall` becomes the velocity that keeps a point of the solid at its place
+/// in the body over the whole step, (x(t + dt) - x(t))/dt. It is affine in x, so what sticks is carried without
+/// drift, where the velocity of the moment would let it spiral outwards by (w dt)^2/2 a step.
+template <class Real>
+NodeContact<Real> ContactTables<Real>::meet(const Moving& moving, const Vec3& x, double dt, const Real* v,
+                                            Real* wall) const {
+  const Solid& solid = solids_[moving.solid];
+  const Vec3 own = moving.end.own(x);
+  const double distance = solid.distance(own) - kNodeReach * spacing_;  // when the step ends
+  const Vec3 speed =
+      moving.still ? Vec3(0, 0, 0) : in_plane((moving.end.point(moving.begin.own(x)) - x) / dt, flat_axis_);
+  for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(speed[axis]);
+  const bool separating = solid.contact == Contact::kSeparating;
+  const double path = separating ? dt * std::sqrt(static_cast<double>(dot(v, v))) : 0.0;
+  if (distance > path) return {std::numeric_limits<Real>::max(), {Real(0), Real(0), Real(0)}};
+  const Vec3 normal = in_plane(moving.end.direction(solid.normal(own, 0.25 * spacing_)), flat_axis_);
+  // A separating node moves on from where the solid stands when the step begins.
+  NodeContact<Real> contact{static_cast<Real>(separating ? distance + dt * normal.dot(speed) : distance), {}};
+  for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);
+  return contact;
+}
+
+template <class Real>
+template <bool kAnyMoves, class Record>
+void ContactTables<Real>::collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x,
+                                       Real dt, Real* v, Real* rubbed, Record record) const {
+  Real impulse[kMost] = {};  // |v-bar - v*| per solid: the impulse over the mass
+  NodeContact<Real> met[kAnyMoves ? kMost : 1];
+  Real walls[kAnyMoves ? kMost : 1][3];
+  const auto moves = [&](std::size_t k) { return kAnyMoves && touches[k].moving != nullptr; };
+  const auto contact = [&](std::size_t k) -> const NodeContact<Real>& {
+    return moves(k) ? met[k] : touches[k].nodes[node];
+  };
+  const auto wall = [&](std::size_t k) -> const Real* { return moves(k) ? walls[k] : nullptr; };
+  for (std::size_t k = 0; k < count; ++k) {
+    if (moves(k)) met[k] = meet(*touches[k].moving, x, static_cast<double>(dt), v, walls[k]);
+    record.before(v);
+    impulse[k] = constrain(solids_[touches[k].solid].contact, contact(k), wall(k), dt, v);
+    record.after(touches[k].solid, wall(k), v);
+  }
+  std::copy_n(v, 3, rubbed);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Real bound = static_cast<Real>(solids_[touches[k].solid].friction) * impulse[k];
+    if (!(bound > Real(0))) continue;
+    record.before(rubbed);
+    rub(contact(k).normal, wall(k), bound, rubbed);
+    record.after(touches[k].solid, wall(k), rubbed);
+  }
+}
+
+/// Calls visit(node, mass and v, mass and v-tilde) for each node with mass; returns whether friction changed
+/// one.
+template <class Real>
+template <class Visit>
+bool ContactTables<Real>::for_each_node(NodeBlock<Real>& block, Real* rubbed, Visit visit) const {
+  bool any_friction = false;
+  for (std::size_t node = 0; node < kBlockNodes; ++node) {
+    Real* at = block.nodes + node * kNodeValues;
+    Real* after = rubbed + node * kNodeValues;
+    std::copy_n(at, kNodeValues, after);
+    if (!(at[0] > Real(0))) continue;
+    visit(node, at, after);
+    any_friction = any_friction || !std::equal(at, at + kNodeValues, after);
+  }
+  return any_friction;
+}
+
+/// Returns whether friction changed a node.
+template <class Real>
+bool ContactTables<Real>::collide_block(NodeBlock<Real>& block, const Touch* touches, std::size_t count,
+                                        Real* rubbed) const {
+  const State<Real>& state = block.state;
+  const auto place = [&](std::size_t node) {
+    const std::array<double, 3> offset{double(node / 16), double(node / 4 % 4), double(node % 4)};
+    return in_plane(state.world(state.grid.blocks()[block.block], offset), flat_axis_);
+  };
+  if (log_ != nullptr) {
+    ContactSums* const row = log_->row(block.block);
+    std::fill_n(row, log_->solids(), ContactSums());
+    return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
+      const Vec3 x = place(node);
+      collide_node<true>(touches, count, node, x, block.dt, at + 1, after + 1,
+                         Recorder{row, static_cast<double>(at[0]), x});
+    });
+  }
+  if (count == 0) return false;
+  if (std::any_of(touches, touches + count, [](const Touch& touch) { return touch.moving != nullptr; })) {
+    return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
+      collide_node<true>(touches, count, node, place(node), block.dt, at + 1, after + 1, NoRecord{});
+    });
+  }
+  return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
+    collide_node<false>(touches, count, node, Vec3(), block.dt, at + 1, after + 1, NoRecord{});
+  });
+}
+
+template <class Real>
+void ContactTables<Real>::collide(NodeBlock<Real>& block) const {
+  const bool listed = any_moves() && listed_begin_[block.block] < listed_begin_[block.block + 1];
+  if (of_block_[block.block] == nullptr && !listed) return;
+  auto& rubbed_field = block.state.after_friction;
+  const std::int32_t slot = rubbed_field.slot.empty() ? -1 : rubbed_field.slot[block.block];
+  Touch touches[kMost];
+  const std::size_t count = find_touches(block, touches);
+  Real rubbed[kBlockValues];
+  const bool any_friction = collide_block(block, touches, count, rubbed);
+  if (slot < 0) return;
+  rubbed_field.live[static_cast<std::size_t>(slot)] = any_friction ? 1 : 0;
+  if (any_friction) std::copy_n(rubbed, kBlockValues, rubbed_field.block(block.block));
+}
+
+template class ContactTables<float>;
+template class ContactTables<double>;
+
+}  // namespace repose

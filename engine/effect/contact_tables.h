@@ -1,0 +1,95 @@
+// Repose: which blocks know of which solids, and the nodes' places beside them. For solids that rest distances
+// and normals are tabulated, once per block that the material ever reaches. For those that move there is a list
+// of the blocks that they may reach, with a margin that lasts for several steps, and nodes ask for their
+// distance when the step needs it.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "engine/effect/contact_law.h"
+#include "engine/effect/contact_log.h"
+#include "engine/step/step_plan.h"
+
+namespace repose {
+
+/// A node counts as touched as soon as the half cell around it reaches the solid. With the bare sign of its own
+/// distance the first constrained node lies up to a cell inside, and a particle drifts farther, to where its
+/// stencil has left the free nodes: 1.5 cells deep with the quadratic one, two with the cubic. So the wall is
+/// met half a cell early at most, and passed by one (one and a half) at most.
+inline constexpr double kNodeReach = 0.5;  // cells
+
+template <class Real>
+class ContactTables {
+ public:
+  /// `log` may be null.
+  ContactTables(std::vector<Solid> solids, std::shared_ptr<ContactLog> log);
+
+  /// Tables and lists for the blocks of the grid.
+  void follow_topology(State<Real>& state);
+  /// Where moving solids stand before and after the step; a new list when they have used up its margin.
+  void prepare(State<Real>& state, Real dt);
+  void collide(NodeBlock<Real>& block) const;
+
+  bool any_moves() const { return !moving_.empty(); }
+  /// Largest speed of the surface of moving solids where there are blocks, m/s.
+  double fastest(double from, double to) const;
+
+ private:
+  /// Beside one solid that rests.
+  struct Near {
+    std::size_t solid;
+    std::array<NodeContact<Real>, kBlockNodes> nodes;
+  };
+  using NearSolids = std::vector<Near>;
+
+  struct Moving {
+    std::size_t solid;
+    double radius;                 // of its surface about the pivot, m; infinite for planes
+    Placement listed, begin, end;  // when the list was made; at the ends of the step
+    bool still = false;            // begin is end
+  };
+
+  /// A solid that is near a block in this step.
+  struct Touch {
+    std::size_t solid;
+    const NodeContact<Real>* nodes;  // null where it moves
+    const Moving* moving;
+  };
+  static constexpr std::size_t kMost = 16;
+
+  /// Why a node's record is a type: where nothing is recorded it must not cost.
+  struct NoRecord;
+  struct Recorder;
+
+  double reach(const State<Real>& state) const;
+  NearSolids tabulate(const State<Real>& state, const Index3& block) const;
+  void find_bounds(const State<Real>& state);
+  void list_moving(const State<Real>& state);
+  void share_out(State<Real>& state);
+  bool rubs(std::size_t block) const;
+  std::size_t find_touches(const NodeBlock<Real>& block, Touch* touches) const;
+  NodeContact<Real> meet(const Moving& moving, const Vec3& x, double dt, const Real* v, Real* wall) const;
+  template <bool kAnyMoves, class Record>
+  void collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x, Real dt, Real* v,
+                    Real* rubbed, Record record) const;
+  template <class Visit>
+  bool for_each_node(NodeBlock<Real>& block, Real* rubbed, Visit visit) const;
+  bool collide_block(NodeBlock<Real>& block, const Touch* touches, std::size_t count, Real* rubbed) const;
+
+  std::vector<Solid> solids_;
+  std::shared_ptr<ContactLog> log_;
+  bool friction_ = false;
+  double spacing_ = 0.0;
+  int flat_axis_ = -1;
+  std::map<Index3, NearSolids> seen_;        // every block ever reached; entries stay where they are
+  std::vector<const NearSolids*> of_block_;  // per block of the grid; null where no resting solid is near
+  std::vector<Moving> moving_;
+  std::vector<std::uint32_t> listed_begin_;  // per block, in listed_; empty where nothing moves
+  std::vector<std::uint32_t> listed_;        // positions in moving_
+  Bounds bounds_;                            // of the nodes, m
+};
+
+}  // namespace repose

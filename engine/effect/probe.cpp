@@ -1,0 +1,266 @@
+#include "engine/effect/probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/effect/particle_energy.h"
+
+namespace repose {
+namespace {
+
+using Type = ProbeDescription::Type;
+
+void describe_force(Fields& fields, ProbeDescription& probe) {
+  fields.text("collider", probe.collider, "name of the collider that the material acts on", true);
+  fields.vector("about", probe.about, {.unit = "m", .meaning = "the point that the torque is about"});
+}
+
+void describe_flow(Fields& fields, ProbeDescription& probe) {
+  fields.vector("point", probe.plane.point, {.unit = "m", .meaning = "a point of the plane"});
+  fields.vector("normal", probe.plane.normal, {.meaning = "direction that counts as forth, of any length"});
+  const double length = probe.plane.normal.norm();
+  fields.check(std::isfinite(length) && length > 1e-12, "normal", "must not be zero, for example [0, 1, 0]");
+}
+
+void describe_surface(Fields& fields, ProbeDescription& probe) {
+  fields.vector("from", probe.line.from, {.unit = "m", .meaning = "where the line begins", .required = true});
+  fields.vector("to", probe.line.to, {.unit = "m", .meaning = "where it ends", .required = true});
+  fields.number("width", probe.line.width,
+                {.unit = "m", .meaning = "of the columns across the line; 0: the grid's spacing", .low = 0.0});
+  fields.integer("samples", probe.line.samples,
+                 {.meaning = "columns from end to end; 0: one each spacing", .low = 0.0, .high = 10000.0});
+}
+
+void describe(Fields& fields, ProbeDescription& probe) {
+  fields.text("name", probe.name, "what reports call it; no two probes share a name", true);
+  const Alternative kinds[] = {
+      {"force", "mean force (N), torque (N m) and impulse (N s) of the material on a collider",
+       [&](Fields& f) { describe_force(f, probe); }},
+      {"flow", "particles and mass that cross a plane, each way", [&](Fields& f) { describe_flow(f, probe); }},
+      {"surface", "height of the free surface along a line", [&](Fields& f) { describe_surface(f, probe); }},
+      {"energy", "energies, the work of moving solids, and what was dissipated", [](Fields&) {}},
+  };
+  int chosen = static_cast<int>(probe.type);
+  fields.alternatives(chosen, kinds, "what is measured");
+  probe.type = static_cast<Type>(chosen);
+}
+
+PassDescription description(const ProbeDescription& probe, std::vector<std::string> reads) {
+  return {"probe " + probe.name, "probes", std::move(reads), {}};
+}
+
+template <class Real>
+MeasurePass<Real> force_pass(const ProbeDescription& probe, std::shared_ptr<ContactLog> log,
+                             std::size_t solid) {
+  constexpr std::size_t kTallies = 7;  // s; impulse of the solid on the material, its moment about the origin
+  MeasurePass<Real> pass{description(probe, {"contacts"}), kTallies, {}, {}, {}};
+  pass.begin_frame = [](const State<Real>&, double* tallies) { std::fill_n(tallies, kTallies, 0.0); };
+  pass.after_step = [log, solid](const State<Real>&, double dt, double* tallies) {
+    const ContactSums sums = log->total(solid);
+    tallies[0] += dt;
+    for (int axis = 0; axis < 3; ++axis) {
+      tallies[1 + axis] += sums.impulse[axis];
+      tallies[4 + axis] += sums.moment[axis];
+    }
+  };
+  pass.report = [name = probe.name, about = probe.about](const State<Real>&, const double* tallies,
+                                                         std::vector<Measurement>& report) {
+    const double time = tallies[0] > 0.0 ? tallies[0] : 1.0;
+    const Vec3 impulse(-tallies[1], -tallies[2], -tallies[3]);
+    const Vec3 moment = Vec3(-tallies[4], -tallies[5], -tallies[6]) - about.cross(impulse);
+    const auto add = [&](const char* quantity, const char* unit, const Vec3& value) {
+      for (int axis = 0; axis < 3; ++axis) {
+        report.push_back({name, std::string(quantity) + "." + "xyz"[axis], unit, value[axis]});
+      }
+    };
+    add("force", "N", impulse / time);
+    add("torque", "N m", moment / time);
+    add("impulse", "N s", impulse);
+  };
+  return pass;
+}
+
+template <class Real>
+MeasurePass<Real> flow_pass(const ProbeDescription& probe, std::shared_ptr<FlowCounts> flows,
+                            std::size_t plane) {
+  MeasurePass<Real> pass{description(probe, {"position"}), FlowCounts::kTallies, {}, {}, {}};
+  pass.begin_frame = [](const State<Real>&, double* tallies) {
+    std::fill_n(tallies, FlowCounts::kTallies, 0.0);
+  };
+  pass.after_step = [flows, plane](const State<Real>& state, double, double* tallies) {
+    flows->take(state, plane, tallies);
+  };
+  pass.report = [name = probe.name](const State<Real>&, const double* tallies,
+                                    std::vector<Measurement>& report) {
+    report.push_back({name, "particles_forth", "", tallies[0]});
+    report.push_back({name, "mass_forth", "kg", tallies[1]});
+    report.push_back({name, "particles_back", "", tallies[2]});
+    report.push_back({name, "mass_back", "kg", tallies[3]});
+  };
+  return pass;
+}
+
+template <class Real>
+MeasurePass<Real> surface_pass(const ProbeDescription& probe, const Vec3& up) {
+  MeasurePass<Real> pass{description(probe, {"position"}), 0, {}, {}, {}};
+  pass.report = [name = probe.name, line = probe.line, up](const State<Real>& state, const double*,
+                                                           std::vector<Measurement>& report) {
+    const std::vector<double> heights = surface_heights(state, line, up);
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+      report.push_back({name, "height." + std::to_string(k), "m", heights[k]});
+    }
+  };
+  return pass;
+}
+
+/// Sums over the particles of a state: kinetic, affine, elastic and potential energy.
+template <class Real>
+struct EnergySum {
+  std::vector<Elasticity> elasticity;  // per set
+  Vec3 gravity;
+  double affine_inertia;
+
+  std::array<double, 4> operator()(const State<Real>& state) const {
+    std::array<double, 4> all{};
+    const auto owners = state.grid.owners();
+    for (std::size_t k = 0; k < state.sets.size(); ++k) {
+      const ParticleSet<Real>& set = state.sets[k];
+      for (std::size_t owner = 0; owner < owners.size(); ++owner) {
+        const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+        for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+          const Vec3 x = state.world(
+              block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
+          const ParticleEnergy energy = particle_energy(set, p, elasticity[k], affine_inertia);
+          all[0] += energy.kinetic;
+          all[1] += energy.affine;
+          all[2] += energy.elastic;
+          all[3] -= set.particle_mass * gravity.dot(x);
+        }
+      }
+    }
+    return all;
+  }
+};
+
+template <class Real>
+MeasurePass<Real> energy_pass(const ProbeDescription& probe, std::shared_ptr<ContactLog> log,
+                              EnergySum<Real> sum) {
+  MeasurePass<Real> pass{description(probe, {"position", "velocity", "strain"}), 2, {}, {}, {}};
+  pass.begin_frame = [sum](const State<Real>& state, double* tallies) {  // all there was; work of solids
+    const auto energy = sum(state);
+    tallies[0] = energy[0] + energy[1] + energy[2] + energy[3];
+    tallies[1] = 0.0;
+  };
+  pass.after_step = [log](const State<Real>&, double, double* tallies) {
+    for (std::size_t solid = 0; solid < log->solids(); ++solid) tallies[1] += log->total(solid).work;
+  };
+  pass.report = [name = probe.name, sum](const State<Real>& state, const double* tallies,
+                                         std::vector<Measurement>& report) {
+    const auto energy = sum(state);
+    constexpr const char* kNames[] = {"kinetic", "affine", "elastic", "potential"};
+    for (std::size_t k = 0; k < energy.size(); ++k) report.push_back({name, kNames[k], "J", energy[k]});
+    report.push_back({name, "work_of_solids", "J", tallies[1]});
+    const double now = energy[0] + energy[1] + energy[2] + energy[3];
+    report.push_back({name, "dissipated", "J", tallies[0] + tallies[1] - now});
+  };
+  return pass;
+}
+
+}  // namespace
+
+void Probes::declare(Fields& fields) {
+  fields.list("probes", false, "figures that are measured and reported per frame", [this](Fields& f) {
+    ProbeDescription probe;
+    describe(f, probe);
+    const bool taken =
+        std::any_of(list.begin(), list.end(), [&](const ProbeDescription& p) { return p.name == probe.name; });
+    f.check(!taken, "name", "\"" + probe.name + "\" is taken by another probe; choose another");
+    list.push_back(probe);
+  });
+}
+
+Result<void> Probes::prepare(const Surroundings& surroundings) {
+  std::vector<FlowPlane> planes;
+  for (const ProbeDescription& probe : list) {
+    const auto refuse = [&](const std::string& key, const std::string& message) {
+      return Error{ErrorKind::kBadScene, message, surroundings.where("probes." + probe.name + key)};
+    };
+    const auto& solids = surroundings.solids;
+    if (probe.type == Type::kForce && std::find(solids.begin(), solids.end(), probe.collider) == solids.end()) {
+      return refuse(".collider", "no collider is called \"" + probe.collider + "\"; name one of 'colliders'");
+    }
+    if (probe.type == Type::kSurface) {
+      const Vec3 line = probe.line.to - probe.line.from;
+      if (!(line.cross(surroundings.up).norm() > 1e-9))
+        return refuse(".to", "must not lie above or below \"from\"; the line runs along the ground");
+    }
+    if (probe.type == Type::kFlow) planes.push_back(probe.plane);
+    if (planes.size() > FlowCounts::kMost)
+      return refuse("", "is one flow too many; a scene may have " + std::to_string(FlowCounts::kMost));
+  }
+  if (!planes.empty()) flows_ = std::make_shared<FlowCounts>(std::move(planes));
+  return {};
+}
+
+template <class Real>
+void Probes::add_to_nodes(Assembly<Real>& assembly) const {
+  StepPlan<Real>& plan = assembly.plan;
+  const bool contacts = std::any_of(list.begin(), list.end(), [](const ProbeDescription& probe) {
+    return probe.type == Type::kForce || probe.type == Type::kEnergy;
+  });
+  if (contacts) assembly.contact_log = std::make_shared<ContactLog>(assembly.solids.size());
+  if (flows_ != nullptr) {
+    flows_->expect_sets(assembly.sets.size());
+    plan.order.push_back({{"blocks near planes of flow", "probes", {"topology"}, {"planes of flow"}},
+                          [flows = flows_](State<Real>& state) { flows->follow_topology(state); }});
+  }
+  EnergySum<Real> energy{{},
+                         assembly.surroundings.gravity,
+                         assembly.state.spacing * assembly.state.spacing / plan.transfer.nodes().inverse_d};
+  for (const SetDescription& set : assembly.sets) energy.elasticity.push_back(set.elasticity());
+  std::size_t flow = 0;
+  for (const ProbeDescription& probe : list) {
+    switch (probe.type) {
+      case Type::kForce: {
+        std::size_t solid = 0;
+        while (assembly.solids[solid].name != probe.collider) ++solid;
+        plan.measures.push_back(force_pass<Real>(probe, assembly.contact_log, solid));
+        break;
+      }
+      case Type::kFlow:
+        plan.measures.push_back(flow_pass<Real>(probe, flows_, flow++));
+        break;
+      case Type::kSurface:
+        plan.measures.push_back(surface_pass<Real>(probe, assembly.surroundings.up));
+        break;
+      case Type::kEnergy:
+        plan.measures.push_back(energy_pass<Real>(probe, assembly.contact_log, energy));
+        break;
+    }
+  }
+}
+
+template <class Real>
+void Probes::add_before_motion(Assembly<Real>& assembly, std::size_t set) const {
+  if (flows_ == nullptr) return;
+  assembly.plan.gather[set].push_back({{"sides of planes", "probes", {"position", "planes of flow"}, {"sides"}},
+                                       [flows = flows_](Chunk<Real>& chunk) { flows->note_sides(chunk); }});
+}
+
+template <class Real>
+void Probes::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
+  if (flows_ == nullptr) return;
+  assembly.plan.gather[set].push_back(
+      {{"count flow", "probes", {"position", "sides"}, {}},
+       [flows = flows_, set](Chunk<Real>& chunk) { flows->count(chunk, set); }});
+}
+
+#define REPOSE_INSTANTIATE(Real)                                               \
+  template void Probes::add_to_nodes(Assembly<Real>&) const;                   \
+  template void Probes::add_before_motion(Assembly<Real>&, std::size_t) const; \
+  template void Probes::add_after_motion(Assembly<Real>&, std::size_t) const;
+REPOSE_INSTANTIATE(float)
+REPOSE_INSTANTIATE(double)
+#undef REPOSE_INSTANTIATE
+
+}  // namespace repose
