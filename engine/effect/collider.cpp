@@ -59,6 +59,16 @@ void Colliders::add_to_nodes(Assembly<Real>& assembly) const {
                             [tables](State<Real>& state, Real dt) { tables->prepare(state, dt); }});
     plan.speeds.push_back([tables](double from, double to) { return tables->fastest(from, to); });
   }
+  for (const Solid& solid : assembly.solids) {
+    if (solid.motion == nullptr) continue;
+    plan.disturbances.push_back(
+        {"solid " + solid.name, [solid](const State<Real>& state, const Index3& block, double from, double to) {
+           const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
+           const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
+           const double radius = block_reach(state.spacing);
+           return before != after && std::min(solid.distance(before), solid.distance(after)) <= radius;
+         }});
+  }
   plan.nodes.push_back(
       {{"collide, friction", "colliders", {"node velocity", "contacts"}, {"node velocity", "v-tilde"}},
        [tables](NodeBlock<Real>& block) { tables->collide(block); }});

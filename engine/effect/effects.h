@@ -9,16 +9,17 @@
 #include "engine/effect/collider.h"
 #include "engine/effect/dilatancy.h"
 #include "engine/effect/emitter.h"
-#include "engine/effect/gravity.h"
 #include "engine/effect/force_field.h"
+#include "engine/effect/gravity.h"
 #include "engine/effect/hardening.h"
 #include "engine/effect/moisture.h"
+#include "engine/effect/pin.h"
 #include "engine/effect/prestress.h"
+#include "engine/effect/probe.h"
 #include "engine/effect/rate_friction.h"
 #include "engine/effect/sink.h"
+#include "engine/effect/sleep.h"
 #include "engine/effect/variation.h"
-#include "engine/effect/pin.h"
-#include "engine/effect/probe.h"
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
@@ -30,6 +31,7 @@ using Effects = std::tuple<Emitters,          // particles that begin
                            Pins,              // v* of held nodes
                            Probes,            // asks solids for a log, so before them
                            Colliders,         // v* -> v-bar -> v-tilde: last of the node passes
+                           Sleep,             // blocks at rest take no part
                            Prestress,         // bodies begin under their weight
                            VolumeCorrection,  // around the return map, and around all that follows here
                            Hardening,         // cone <- that of the shear so far

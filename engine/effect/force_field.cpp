@@ -105,6 +105,12 @@ Result<void> ForceFields::prepare(const Surroundings& surroundings) {
 template <class Real>
 void ForceFields::add_to_nodes(Assembly<Real>& assembly) const {
   for (const ForceField& field : list) {
+    assembly.plan.disturbances.push_back(
+        {"force field " + field.name,
+         [field](const State<Real>& state, const Index3& block, double from, double to) {
+           const bool changes = within_step(field.start, from, to) || within_step(field.end, from, to);
+           return changes && reaches(field, state, block);
+         }});
     assembly.plan.nodes.push_back(
         {{"force field " + field.name, "force_fields." + field.name, {"node velocity"}, {"node velocity"}},
          [field](NodeBlock<Real>& block) { act_on_block(field, block); }});

@@ -28,6 +28,11 @@ void Gravity::add_to_nodes(Assembly<Real>& assembly) const {
       change[axis] = static_cast<Real>(dt * share * gravity.acceleration[axis]);
     kernel(block.nodes, change);
   };
+  if (ramp > 0.0) {
+    assembly.plan.disturbances.push_back(
+        {"gravity",
+         [ramp = ramp](const State<Real>&, const Index3&, double from, double) { return from < ramp; }});
+  }
   assembly.plan.nodes.push_back({{"gravity", "gravity", {"node velocity"}, {"node velocity"}}, pull});
 }
 

@@ -87,6 +87,22 @@ void Moisture::add_before_return(Assembly<Real>& assembly, std::size_t set) cons
        }});
 }
 
+/// Sand that grows wet or dry may give way, so it does not sleep.
+template <class Real>
+void Moisture::add_to_nodes(Assembly<Real>& assembly) const {
+  if (sources.empty()) return;
+  assembly.plan.disturbances.push_back(
+      {"wetting", [sources = sources](const State<Real>& state, const Index3& block, double from, double to) {
+         return std::any_of(sources.begin(), sources.end(), [&](const Source& source) {
+           return source.start < to && source.end > from &&
+                  source.solid->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <=
+                      block_reach(state.spacing);
+         });
+       }});
+}
+
+template void Moisture::add_to_nodes(Assembly<float>&) const;
+template void Moisture::add_to_nodes(Assembly<double>&) const;
 template void Moisture::add_before_return(Assembly<float>&, std::size_t) const;
 template void Moisture::add_before_return(Assembly<double>&, std::size_t) const;
 

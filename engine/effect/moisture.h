@@ -36,6 +36,8 @@ struct Moisture : SandEffect<MoistureParameters> {
   std::vector<Channel> channels(const SetDescription& set) const;
 
   template <class Real>
+  void add_to_nodes(Assembly<Real>& assembly) const;
+  template <class Real>
   void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
 };
 

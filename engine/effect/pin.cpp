@@ -117,6 +117,15 @@ void Pins::add_to_nodes(Assembly<Real>& assembly) const {
   assembly.plan.order.push_back({{"pinned nodes", "pins", {"topology"}, {"pinned nodes"}},
                                  [nodes](State<Real>& state) { nodes->follow_topology(state); }});
   assembly.plan.speeds.push_back([pins = *this](double from, double to) { return pins.fastest(from, to); });
+  assembly.plan.disturbances.push_back(
+      {"pins", [pins = list](const State<Real>& state, const Index3& block, double from, double to) {
+         return std::any_of(pins.begin(), pins.end(), [&](const PinDescription& pin) {
+           const bool draws = pin.velocity.norm() > 0.0 && pin.start < to && pin.end > from;
+           const bool changes = within_step(pin.start, from, to) || within_step(pin.end, from, to);
+           return (draws || changes) &&
+                  pin.solid->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <= block_reach(state.spacing);
+         });
+       }});
   assembly.plan.nodes.push_back({{"pins", "pins", {"node velocity", "pinned nodes"}, {"node velocity"}},
                                  [nodes](NodeBlock<Real>& block) { nodes->hold(block); }});
 }

@@ -165,6 +165,26 @@ Result<void> read_counts(ChunkReader& reader, State<Real>& state) {
   return {};
 }
 
+/// Visits the arrays of State::rest.
+template <class AnyRest, class Visit>
+Result<void> for_each_rest(AnyRest& rest, Visit visit) {
+  if (auto done = visit("rest.asleep", rest.asleep.data(), rest.asleep.size()); !done) return done;
+  if (auto done = visit("rest.calm", rest.calm.data(), rest.calm.size() * sizeof(double)); !done) return done;
+  return visit("rest.path", rest.path.data(), rest.path.size() * sizeof(double));
+}
+
+Result<void> write_rest(AtomicFile& file, const RestField& rest) {
+  return for_each_rest(rest, [&](const std::string& name, const void* data, std::size_t bytes) {
+    return write_chunk(file, name, data, bytes);
+  });
+}
+
+Result<void> read_rest(ChunkReader& reader, RestField& rest) {
+  return for_each_rest(rest, [&](const std::string& name, void* data, std::size_t bytes) {
+    return reader.read(name, data, bytes);
+  });
+}
+
 Result<Head> read_head(ChunkReader& reader) {
   Head head;
   std::string bytes = bytes_of(head);  // for its size
@@ -204,6 +224,9 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   if (auto written = write_chunk(*file, "counts", counts.data(), counts.size() * sizeof counts[0]); !written) {
     return written;
   }
+  if (state.rest.on) {
+    if (auto written = write_rest(*file, state.rest); !written) return written;
+  }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto written = write_chunk(*file, "tallies", state.tallies.data(), tally_bytes); !written) return written;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
@@ -235,6 +258,10 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   std::vector<Index3> owners(head->owners);
   if (auto read = reader->read("blocks", owners.data(), owners.size() * sizeof(Index3)); !read) return read;
   if (auto read = read_counts(*reader, state); !read) return read;
+  if (state.rest.on) {
+    state.rest.resize(head->owners);
+    if (auto read = read_rest(*reader, state.rest); !read) return read;
+  }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto read = reader->read("tallies", state.tallies.data(), tally_bytes); !read) return read;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {

@@ -382,6 +382,7 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
   set_initial_speed(state);
   compiled.plan = compile_plan(compilation, state, compiled.solids);
+  state.rest.on = compiled.plan.rest.has_value();
   if (auto valid = compiled.plan.validate(state); !valid) return valid.error();
   state.tallies.assign(compiled.plan.tallies(), 0.0);
   return compiled;

@@ -103,7 +103,7 @@ class SimulationOf final : public Simulation {
   }
   Result<void> load(const std::string& path) override {
     if (auto loaded = load_checkpoint(path, scene_hash(scene_), state_); !loaded) return loaded;
-    for (const auto& pass : stepper_.plan().order) pass.run(state_);
+    stepper_.follow(state_);
     return {};
   }
 

@@ -11,6 +11,7 @@
 #include "engine/state/block_grid.h"
 #include "engine/state/node_field.h"
 #include "engine/state/particle_set.h"
+#include "engine/state/rest_field.h"
 
 namespace repose {
 
@@ -52,6 +53,8 @@ struct State {
   Counters counters;
   Ledger ledger;
   std::vector<double> tallies;  ///< running sums of what is measured; saved, but no part of the state's hash
+
+  RestField rest;
 
   BlockGrid grid;
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar

@@ -65,10 +65,14 @@ bool Stepper<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt
 template <class Real>
 std::optional<Offender> Stepper<Real>::inspect(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kInspect);
-  const std::size_t owners = state.grid.owners().size();
   suspects_.clear();
-  for (std::size_t owner = 0; owner < owners; ++owner) {
+  const auto look = [&](std::size_t owner) {
     if (!bounded(state, owner, dt)) suspects_.push_back(static_cast<std::int32_t>(owner));
+  };
+  if (rest_) {
+    for (const std::int32_t owner : rest_->attendance().awake) look(static_cast<std::size_t>(owner));
+  } else {
+    for (std::size_t owner = 0; owner < state.grid.owners().size(); ++owner) look(owner);
   }
   found_.resize(suspects_.size());
   threads_.for_each(suspects_.size(), [&](std::size_t i) {

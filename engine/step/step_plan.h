@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "engine/state/ownership.h"
 #include "engine/state/particle_edit.h"
 #include "engine/state/state.h"
+#include "engine/step/rest.h"
 #include "kernels/pass/pass.h"
 
 namespace repose {
@@ -191,6 +193,9 @@ struct StepPlan {
   std::vector<std::vector<ParticlePass<Real>>> gather;  ///< per set
 
   std::vector<MeasurePass<Real>> measures;
+
+  std::optional<RestRule> rest;                 ///< whether, and when, blocks sleep
+  std::vector<Disturbance<Real>> disturbances;  ///< what wakes them from outside
 
   /// How fast, in m/s, what is no particle moves at most between two times (s): it must not cross more cells in
   /// a step than particles may.

@@ -2,6 +2,7 @@
 #include "engine/step/stepper.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "engine/step/transfer_stages.h"
@@ -23,7 +24,9 @@ constexpr double kLeastShare = 1e-12;
 
 template <class Real>
 Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
-    : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {}
+    : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {
+  if (plan_.rest) rest_.emplace(*plan_.rest);
+}
 
 template <class Real>
 void Stepper<Real>::order_if_due(State<Real>& state) {
@@ -32,10 +35,18 @@ void Stepper<Real>::order_if_due(State<Real>& state) {
   const bool wasteful = counters.runs_wasted * kCostOfRun > particles * kCostOfOrder;
   if (counters.order_due == 0 && !wasteful) return;
   const PhaseTimer timer(profile_, Phase::kOrder);
+  if (rest_) rest_->before_order(state);
   const bool new_blocks = order_.order(state, threads_, plan_.transfer.ownership());
+  if (rest_) rest_->after_order(state);
   if (topology_known_ && !new_blocks) return;
   for (const auto& pass : plan_.order) pass.run(state);
   topology_known_ = true;
+}
+
+template <class Real>
+void Stepper<Real>::follow(State<Real>& state) {
+  for (const auto& pass : plan_.order) pass.run(state);
+  if (rest_) rest_->forget();
 }
 
 /// Returns whether particles have begun or ended.
@@ -50,8 +61,10 @@ Result<bool> Stepper<Real>::carry_out_events(State<Real>& state, Moment moment) 
     pass.run(state, *edit);
   }
   if (!edit || edit->empty()) return false;
+  if (rest_) rest_->before_order(state);
   const auto new_blocks = apply_edit(std::move(*edit), state, plan_.transfer.ownership());
   if (!new_blocks) return new_blocks.error();
+  if (rest_) rest_->after_order(state);
   if (*new_blocks) topology_known_ = false;
   return true;
 }
@@ -89,12 +102,14 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     report.offender = fastest(state);
     return report;
   }
+  if (rest_) rest_->attend(state, plan_.disturbances, state.counters.time + size.dt);
   for (; report.redone <= kMostHalvings; ++report.redone) {
     report.dt = std::ldexp(size.dt, -report.redone);
     const Real dt = static_cast<Real>(report.dt);
     scatter(state, dt);
     for (const auto& pass : plan_.prepare) pass.run(state, dt);
     update_nodes(state, dt);
+    if (rest_) wake(state, dt);
     report.offender = inspect(state, dt);
     if (report.offender) continue;
     gather(state, dt);
@@ -109,20 +124,65 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   return report;
 }
 
+/// The owners of a colour that take part.
 template <class Real>
-void Stepper<Real>::scatter(State<Real>& state, Real dt) {
-  const PhaseTimer timer(profile_, Phase::kScatter);
-  constexpr std::size_t kGrain = 64;
+std::span<const std::int32_t> Stepper<Real>::scattering(const State<Real>& state, int colour) const {
+  if (rest_) return rest_->attendance().scatter[static_cast<std::size_t>(colour)];
+  return state.grid.colour(colour);
+}
+
+/// Calls visit(block) for the blocks of nodes that take part.
+template <class Real>
+template <class Visit>
+void Stepper<Real>::for_each_block(const State<Real>& state, Visit visit) {
+  constexpr std::size_t kGrain = 8;
+  if (!rest_) {
+    threads_.for_each(state.grid.size(), visit, kGrain);
+    return;
+  }
+  const auto& blocks = rest_->attendance().blocks;
+  threads_.for_each(
+      blocks.size(), [&](std::size_t i) { visit(static_cast<std::size_t>(blocks[i])); }, kGrain);
+}
+
+/// Calls visit(owner) for the owners whose particles move.
+template <class Real>
+template <class Visit>
+void Stepper<Real>::for_each_awake(const State<Real>& state, Visit visit) {
+  if (!rest_) {
+    threads_.for_each(state.grid.owners().size(), visit);
+    return;
+  }
+  const auto& owners = rest_->attendance().awake;
+  threads_.for_each(owners.size(), [&](std::size_t i) { visit(static_cast<std::size_t>(owners[i])); });
+}
+
+template <class Real>
+void Stepper<Real>::clear_nodes(State<Real>& state) {
   const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
-  threads_.for_each((state.grid.size() + kGrain - 1) / kGrain, [&](std::size_t piece) {
-    const std::size_t first = piece * kGrain, blocks = std::min(kGrain, state.grid.size() - first);
+  const auto clear = [&](std::size_t first, std::size_t blocks) {
     const std::size_t bytes = blocks * kBlockValues * sizeof(Real);
     std::memset(state.nodes.block(first), 0, bytes);
     if (keeps_velocity) std::memset(state.before_forces.block(first), 0, bytes);
+  };
+  if (rest_) {
+    for_each_block(state, [&](std::size_t block) { clear(block, 1); });
+    return;
+  }
+  constexpr std::size_t kGrain = 64;
+  threads_.for_each((state.grid.size() + kGrain - 1) / kGrain, [&](std::size_t piece) {
+    const std::size_t first = piece * kGrain;
+    clear(first, std::min(kGrain, state.grid.size() - first));
   });
+}
+
+template <class Real>
+void Stepper<Real>::scatter(State<Real>& state, Real dt) {
+  const PhaseTimer timer(profile_, Phase::kScatter);
+  clear_nodes(state);
   runs_.assign(state.grid.owners().size(), 0);
   for (int colour = 0; colour < 8; ++colour) {
-    const auto owners = state.grid.colour(colour);
+    const auto owners = scattering(state, colour);
     threads_.for_each(owners.size(), [&](std::size_t i) {
       const std::size_t next = i + 1 < owners.size() ? i + 1 : i;
       scatter_block(state, static_cast<std::size_t>(owners[i]), static_cast<std::size_t>(owners[next]), dt);
@@ -178,14 +238,41 @@ template <class Real>
 void Stepper<Real>::update_nodes(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kNodes);
   bounds_.resize(state.grid.size());
-  threads_.for_each(
-      state.grid.size(),
-      [&](std::size_t block) {
-        NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
-        for (const auto& pass : plan_.nodes) pass.run(nodes);
-        plan_.kernels->bound(nodes.nodes, bounds_[block]);
-      },
-      8);
+  for_each_block(state, [&](std::size_t block) {
+    NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
+    for (const auto& pass : plan_.nodes) pass.run(nodes);
+    plan_.kernels->bound(nodes.nodes, bounds_[block]);
+  });
+}
+
+/// Owners of the margin wake by what their nodes do in this very step.
+template <class Real>
+void Stepper<Real>::wake(State<Real>& state, Real dt) {
+  const auto& margin = rest_->attendance().margin;
+  margin_speeds_.resize(margin.size());
+  threads_.for_each(margin.size(), [&](std::size_t i) {
+    margin_speeds_[i] = fastest_node(state, static_cast<std::size_t>(margin[i]));
+  });
+  rest_->wake_margin(state, static_cast<double>(dt), margin_speeds_);
+}
+
+/// Of the nodes in the rows that the particles of an owner touch, m/s.
+template <class Real>
+double Stepper<Real>::fastest_node(const State<Real>& state, std::size_t owner) {
+  Scratch<Real>& mine = scratch();
+  load_arenas(state, owner, mine);
+  constexpr std::size_t kRowValues = kArenaSide * kNodeValues;
+  double most = 0.0;
+  for (std::uint64_t rows = state.rows_touched[owner]; rows != 0; rows &= rows - 1) {
+    const Real* const row = mine.arena.data() + static_cast<std::size_t>(std::countr_zero(rows)) * kRowValues;
+    for (std::size_t node = 0; node < kArenaSide; ++node) {
+      const Real* const v = row + node * kNodeValues + 1;
+      const double square =
+          double(v[0]) * double(v[0]) + double(v[1]) * double(v[1]) + double(v[2]) * double(v[2]);
+      if (!(square <= most)) most = square;
+    }
+  }
+  return std::sqrt(most);
 }
 
 /// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside
@@ -222,9 +309,8 @@ bool Stepper<Real>::load_arenas(const State<Real>& state, std::size_t owner, Scr
 template <class Real>
 void Stepper<Real>::gather(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kGather);
-  motion_.resize(state.grid.owners().size());
-  threads_.for_each(state.grid.owners().size(),
-                    [&](std::size_t owner) { motion_[owner] = gather_block(state, owner, dt); });
+  motion_.assign(state.grid.owners().size(), {});
+  for_each_awake(state, [&](std::size_t owner) { motion_[owner] = gather_block(state, owner, dt); });
 }
 
 template <class Real>
@@ -263,12 +349,17 @@ void Stepper<Real>::finish(State<Real>& state, Real dt) {
   if (counters.runs_when_ordered < 0) counters.runs_when_ordered = runs;
   counters.runs_wasted += std::max<std::int64_t>(0, runs - counters.runs_when_ordered);
   if (!plan_.events.empty()) counters.unseen_motion += counters.max_speed * static_cast<double>(dt);
+  if (rest_) {
+    rest_->settle(state, static_cast<double>(dt), [this](std::size_t owner) {
+      return std::sqrt(static_cast<double>(motion_[owner].speed_squared));
+    });
+  }
   ++counters.step;
 }
 
 template <class Real>
 std::size_t Stepper<Real>::bytes() const {
-  return order_.bytes() + bounds_.capacity() * sizeof(VelocityBounds<Real>) +
+  return order_.bytes() + (rest_ ? rest_->bytes() : 0) + bounds_.capacity() * sizeof(VelocityBounds<Real>) +
          motion_.capacity() * sizeof(Motion<Real>) + runs_.capacity() * sizeof(std::size_t) +
          suspects_.capacity() * sizeof(std::int32_t) + found_.capacity() * sizeof(std::optional<Offender>);
 }

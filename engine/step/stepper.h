@@ -56,6 +56,8 @@ class Stepper {
   std::size_t scratch_bytes() const;
   /// Lets what measures begin anew.
   void begin_frame(State<Real>& state);
+  /// Rebuilds what follows the topology, after a state has been loaded.
+  void follow(State<Real>& state);
   /// Brings the order up to date, if it is due; a step does so by itself.
   void order_if_due(State<Real>& state);
   /// Carries out the events that are due, then brings the order up to date if there were any; a step does the
@@ -69,6 +71,14 @@ class Stepper {
   void update_nodes(State<Real>& state, Real dt);
   std::optional<Offender> inspect(State<Real>& state, Real dt);
   std::optional<Offender> inspect_block(State<Real>& state, std::size_t owner, Real dt);
+  std::span<const std::int32_t> scattering(const State<Real>& state, int colour) const;
+  template <class Visit>
+  void for_each_block(const State<Real>& state, Visit visit);
+  template <class Visit>
+  void for_each_awake(const State<Real>& state, Visit visit);
+  void wake(State<Real>& state, Real dt);
+  double fastest_node(const State<Real>& state, std::size_t owner);
+  void clear_nodes(State<Real>& state);
   bool bounded(const State<Real>& state, std::size_t owner, Real dt) const;
   void gather(State<Real>& state, Real dt);
   Motion<Real> gather_block(State<Real>& state, std::size_t owner, Real dt);
@@ -84,6 +94,8 @@ class Stepper {
   StepPlan<Real> plan_;
   Threads threads_;
   BlockOrder<Real> order_;
+  std::optional<Rest<Real>> rest_;  // where blocks may sleep
+  std::vector<double> margin_speeds_;
   std::vector<Scratch<Real>> scratch_;
   std::vector<VelocityBounds<Real>> bounds_;    // per block
   std::vector<Motion<Real>> motion_;            // per owner

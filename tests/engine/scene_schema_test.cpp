@@ -50,7 +50,7 @@ TEST(SceneSchema, Root_ListsEveryKeyAndNoOther) {
   EXPECT_EQ(schema["properties"].getMemberNames(),
             (std::vector<std::string>{"$schema", "bodies", "camera", "colliders", "emitters", "force_fields",
                                       "gravity", "grid", "materials", "name", "output", "parameters", "pins",
-                                      "prestress", "probes", "repose", "sinks", "time", "up",
+                                      "prestress", "probes", "repose", "sinks", "sleep", "time", "up",
                                       "volume_correction", "wetting"}));
   EXPECT_FALSE(schema["additionalProperties"].asBool());
   std::set<std::string> required;

@@ -1,0 +1,26 @@
+// Repose: sleep: blocks whose sand has come to rest are left out of the step until something wakes them. The
+// rule and its error stand in engine/step/rest.h; without the key nothing ever sleeps.
+#pragma once
+
+#include "engine/effect/effect.h"
+
+namespace repose {
+
+struct Sleep : Effect {
+  static constexpr const char* kName = "sleep";
+
+  bool enabled = false;
+  double speed = 0.0;       ///< m/s; 0: a hundredth of sqrt(|g| dx)
+  double after = 0.1;       ///< s
+  double wake_speed = 0.0;  ///< m/s; 0: twice `speed`
+  double path = 0.01;       ///< cells
+
+  void declare(Fields& fields);
+  bool on() const { return enabled; }
+  std::string why() const { return enabled ? "key 'sleep'" : "no key 'sleep'"; }
+
+  template <class Real>
+  void add_to_nodes(Assembly<Real>& assembly) const;
+};
+
+}  // namespace repose

@@ -1,0 +1,166 @@
+#include "engine/step/rest.h"
+
+#include <algorithm>
+#include <map>
+
+namespace repose {
+namespace {
+
+constexpr std::uint8_t kFar = 3;
+
+template <class Real>
+Index3 block_of(const State<Real>& state, std::size_t owner) {
+  return state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+}
+
+template <class Real>
+std::uint32_t particles_of(const State<Real>& state, std::size_t owner) {
+  std::uint32_t sum = 0;
+  for (const auto& set : state.sets) sum += set.begin[owner + 1] - set.begin[owner];
+  return sum;
+}
+
+}  // namespace
+
+template <class Real>
+void Rest<Real>::before_order(const State<Real>& state) {
+  const std::size_t owners = state.grid.owners().size();
+  old_blocks_.resize(owners);
+  old_counts_.resize(owners);
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    old_blocks_[owner] = block_of(state, owner);
+    old_counts_[owner] = particles_of(state, owner);
+  }
+  old_ = state.rest;
+}
+
+template <class Real>
+void Rest<Real>::after_order(State<Real>& state) {
+  listed_ = false;
+  RestField& rest = state.rest;
+  rest.resize(state.grid.owners().size());
+  if (old_.asleep.size() != old_blocks_.size()) return;  // before the first step: all are awake
+  std::map<Index3, std::size_t> gone;
+  for (std::size_t k = 0; k < old_blocks_.size(); ++k) gone.emplace(old_blocks_[k], k);
+  for (std::size_t owner = 0; owner < rest.asleep.size(); ++owner) {
+    const auto found = gone.find(block_of(state, owner));
+    if (found == gone.end()) continue;
+    rest.take(owner, old_, found->second);
+    if (old_counts_[found->second] != particles_of(state, owner) && rest.asleep[owner] != 0) rest.wake(owner);
+    gone.erase(found);
+  }
+  for (const auto& [block, k] : gone) {
+    for (int n = 0; n < kNeighbours; ++n) {
+      const Index3 next{block[0] + n / 9 - 1, block[1] + n / 3 % 3 - 1, block[2] + n % 3 - 1};
+      const std::int32_t owner = state.grid.find_owner(state.topology.wrap(next));
+      if (owner >= 0 && rest.asleep[static_cast<std::size_t>(owner)] != 0)
+        rest.wake(static_cast<std::size_t>(owner));
+    }
+  }
+}
+
+template <class Real>
+const Attendance& Rest<Real>::attend(State<Real>& state, const std::vector<Disturbance<Real>>& disturbances,
+                                     double to) {
+  RestField& rest = state.rest;
+  const double from = state.counters.time;
+  for (std::size_t owner = 0; owner < rest.asleep.size() && !disturbances.empty(); ++owner) {
+    if (rest.asleep[owner] == 0) continue;
+    const Index3 block = block_of(state, owner);
+    const bool reached = std::any_of(disturbances.begin(), disturbances.end(), [&](const Disturbance<Real>& d) {
+      return d.reaches(state, block, from, to);
+    });
+    if (!reached) continue;
+    rest.wake(owner);
+    listed_ = false;
+  }
+  if (!listed_) list(state);
+  return attendance_;
+}
+
+template <class Real>
+void Rest<Real>::list(const State<Real>& state) {
+  const RestField& rest = state.rest;
+  const std::size_t owners = rest.asleep.size();
+  distance_.assign(owners, kFar);
+  reached_.assign(state.grid.size(), 0);
+  attendance_.awake.clear();
+  attendance_.margin.clear();
+  attendance_.blocks.clear();
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    if (rest.asleep[owner] != 0) continue;
+    distance_[owner] = 0;
+    attendance_.awake.push_back(static_cast<std::int32_t>(owner));
+  }
+  for (std::uint8_t ring = 1; ring < kFar; ++ring) {
+    for (std::size_t owner = 0; owner < owners; ++owner) {
+      if (distance_[owner] != ring - 1) continue;
+      for (const std::int32_t block : state.grid.neighbours(owner)) {
+        const std::int32_t other = block < 0 ? -1 : state.grid.owner_of_block(static_cast<std::size_t>(block));
+        if (other >= 0)
+          distance_[static_cast<std::size_t>(other)] =
+              std::min(distance_[static_cast<std::size_t>(other)], ring);
+      }
+    }
+  }
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    if (distance_[owner] == 1) attendance_.margin.push_back(static_cast<std::int32_t>(owner));
+    if (distance_[owner] == kFar) continue;
+    for (const std::int32_t block : state.grid.neighbours(owner)) {
+      if (block >= 0) reached_[static_cast<std::size_t>(block)] = 1;
+    }
+  }
+  for (std::size_t block = 0; block < reached_.size(); ++block) {
+    if (reached_[block] != 0) attendance_.blocks.push_back(static_cast<std::int32_t>(block));
+  }
+  for (std::size_t colour = 0; colour < attendance_.scatter.size(); ++colour) {
+    auto& list = attendance_.scatter[colour];
+    list.clear();
+    for (const std::int32_t owner : state.grid.colour(static_cast<int>(colour))) {
+      if (distance_[static_cast<std::size_t>(owner)] != kFar) list.push_back(owner);
+    }
+  }
+  listed_ = true;
+}
+
+template <class Real>
+void Rest<Real>::wake_margin(State<Real>& state, double dt, std::span<const double> speeds) {
+  RestField& rest = state.rest;
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    const auto owner = static_cast<std::size_t>(attendance_.margin[k]);
+    if (rest.asleep[owner] == 0) continue;  // woken by an earlier try of this step
+    rest.path[owner] += speeds[k] * dt;
+    // Not a number wakes too: inspection will say whose it is.
+    if (speeds[k] <= rule_.wake_speed && rest.path[owner] <= rule_.path) continue;
+    rest.wake(owner);
+    attendance_.awake.push_back(attendance_.margin[k]);
+    listed_ = false;
+  }
+}
+
+template <class Real>
+void Rest<Real>::settle(State<Real>& state, double dt, const std::function<double(std::size_t owner)>& speed) {
+  RestField& rest = state.rest;
+  for (const std::int32_t k : attendance_.awake) {
+    const auto owner = static_cast<std::size_t>(k);
+    rest.calm[owner] = speed(owner) < rule_.speed ? rest.calm[owner] + dt : 0.0;
+    if (rest.calm[owner] < rule_.after) continue;
+    rest.asleep[owner] = 1;
+    rest.path[owner] = 0.0;
+    listed_ = false;
+  }
+}
+
+template <class Real>
+std::size_t Rest<Real>::bytes() const {
+  std::size_t sum =
+      attendance_.awake.capacity() + attendance_.margin.capacity() + attendance_.blocks.capacity();
+  for (const auto& list : attendance_.scatter) sum += list.capacity();
+  return sum * sizeof(std::int32_t) + distance_.capacity() + reached_.capacity() +
+         old_blocks_.capacity() * (sizeof(Index3) + sizeof(std::uint32_t) + 17);
+}
+
+template class Rest<float>;
+template class Rest<double>;
+
+}  // namespace repose

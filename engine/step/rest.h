@@ -1,0 +1,97 @@
+// Repose: blocks at rest sleep. What sleeps keeps its particles, their stress and their velocity as they are,
+// and is left out of the step but for a margin: owners within two blocks of one that is awake still scatter, so
+// that whatever is awake meets their mass and their stress. Of these, the ones next to the awake have complete
+// nodes, and wake, before anything is gathered, when those nodes move: the step in which an owner wakes already
+// moves it, so the momentum that woke it is not lost.
+//
+// The error: what falls asleep still moved, slower than `speed`; and a sleeping block stands like a rock under
+// loads whose nodes move slower than `wake_speed` and not farther than `path` in all. The scene gives all
+// three.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/state/state.h"
+
+namespace repose {
+
+/// When blocks fall asleep and wake.
+struct RestRule {
+  double speed = 0.0;       ///< m/s; a block whose particles are all slower is calm
+  double after = 0.0;       ///< s that it must be calm before it sleeps
+  double wake_speed = 0.0;  ///< m/s of a node that a sleeping block's particles touch, which wakes it
+  double path = 0.0;        ///< m, that such a node may move in all
+};
+
+/// What acts on sleeping blocks from outside, such as a solid that moves: whether it reaches the block between
+/// two times.
+template <class Real>
+struct Disturbance {
+  std::string name;
+  std::function<bool(const State<Real>&, const Index3& block, double from, double to)> reaches;
+};
+
+/// How far the particles of a block can be from the middle of its nodes, (1.5, 1.5, 1.5) cells from its origin,
+/// m.
+constexpr double block_reach(double spacing) {
+  return 0.5 * 1.7320508075688772 * (kArenaSide + 1) * spacing;
+}
+
+/// Whether a moment lies in a step from one time to another.
+constexpr bool within_step(double moment, double from, double to) {
+  return from <= moment && moment < to;
+}
+
+/// Who takes part in a step.
+struct Attendance {
+  std::array<std::vector<std::int32_t>, 8> scatter;  ///< owners, by colour
+  std::vector<std::int32_t> awake;                   ///< owners that gather
+  std::vector<std::int32_t> margin;                  ///< sleeping owners next to these, which may wake
+  std::vector<std::int32_t> blocks;                  ///< blocks of nodes that the owners of `scatter` reach
+};
+
+/// Keeps State::rest, and works out who takes part.
+template <class Real>
+class Rest {
+ public:
+  explicit Rest(const RestRule& rule) : rule_(rule) {}
+
+  /// Around whatever gives particles other places or owners: an owner keeps its rest by its block. One that
+  /// sleeps and has gained or lost particles wakes, and so do the neighbours of one that is gone.
+  void before_order(const State<Real>& state);
+  void after_order(State<Real>& state);
+
+  /// Wakes what disturbances reach before `to` (s), and lists who takes part.
+  const Attendance& attend(State<Real>& state, const std::vector<Disturbance<Real>>& disturbances, double to);
+  /// After a state has been loaded.
+  void forget() { listed_ = false; }
+  const Attendance& attendance() const { return attendance_; }
+
+  /// Once the nodes have moved: wakes those of the margin whose nodes were too fast. `speeds` are those of the
+  /// fastest nodes that the particles of each owner of the margin touch, m/s. They join those awake.
+  void wake_margin(State<Real>& state, double dt, std::span<const double> speeds);
+
+  /// At the end of a step. `speed(owner)` is that of its fastest particle, m/s.
+  void settle(State<Real>& state, double dt, const std::function<double(std::size_t owner)>& speed);
+
+  std::size_t bytes() const;
+
+ private:
+  void list(const State<Real>& state);
+
+  RestRule rule_;
+  Attendance attendance_;
+  bool listed_ = false;
+  std::vector<std::uint8_t> distance_;  // per owner: 0 awake, 1 or 2 blocks from one that is, 3 farther
+  std::vector<std::uint8_t> reached_;   // per block
+  std::vector<Index3> old_blocks_;
+  std::vector<std::uint32_t> old_counts_;
+  RestField old_;
+};
+
+}  // namespace repose
