@@ -24,7 +24,7 @@ struct Scratch {
   AlignedArray<Real> stress{kStrainComponents * kChunk};
   AlignedArray<Real> velocity{3 * kChunk};
   AlignedArray<Real> before{3 * kChunk};  ///< velocity before forces, at the particles
-  AlignedArray<Real> affine{kAffineComponents * kChunk};
+  AlignedArray<Real> gradient{kAffineComponents * kChunk};
   AlignedArray<Real> value{
       kChunk};  ///< one number per particle, from the first half of an effect to its second
 };

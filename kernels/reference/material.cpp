@@ -59,7 +59,7 @@ template <class Real>
 void trial(const MaterialInput<Real>& in, double least) {
   for (std::size_t p = 0; p < in.count; ++p) {
     Matrix g;
-    for (int k = 0; k < 9; ++k) g(k / 3, k % 3) = double{in.dt} * in.affine[k][p];
+    for (int k = 0; k < 9; ++k) g(k / 3, k % 3) = double{in.dt} * in.gradient[k][p];
     const Matrix e = full(expm1_twice(load(in.strain, p)));
     // (I + g)(I + e)(I + g)^T - I without the cancelling ones.
     const Matrix pushed = e + g + g * e;

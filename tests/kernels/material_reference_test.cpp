@@ -35,7 +35,7 @@ std::vector<Symmetric<Real>> through(const void* constants, const std::vector<Sy
   }
   for (int k = 0; k < 9; ++k) {
     for (const auto& g : gradients) gradient[k].push_back(g[k]);
-    in.affine[k] = gradient[k].data();
+    in.gradient[k] = gradient[k].data();
   }
   pass(in);
   std::vector<Symmetric<Real>> out(strains.size());
