@@ -61,6 +61,10 @@ struct MaterialDescription {
   const Elasticity& elasticity() const {
     return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
   }
+  /// J/m^3 of the volume at rest; strain xx xy xz yy yz zz.
+  double energy_density(const double (&strain)[kStrainComponents]) const {
+    return std::visit([&strain](const auto& p) { return p.energy_density(strain); }, parameters);
+  }
   bool yields() const {
     return std::visit([](const auto& p) { return std::decay_t<decltype(p)>::kYields; }, parameters);
   }

@@ -6,14 +6,10 @@
 namespace repose {
 namespace {
 
-const Elasticity& elasticity_of(const Scene& scene, int material) {
-  return scene.materials[static_cast<std::size_t>(material)].elasticity();
-}
-
 /// Adds one particle to the sums of its block.
 template <class Real>
-void add_particle(const ParticleSet<Real>& set, std::size_t p, const Elasticity& elasticity, const Vec3& x,
-                  double affine_inertia, Diagnostics& sums) {
+void add_particle(const ParticleSet<Real>& set, std::size_t p, const MaterialDescription& material,
+                  const Vec3& x, double affine_inertia, Diagnostics& sums) {
   const double mass = set.particle_mass;
   Vec3 v;
   Mat3 c;
@@ -22,15 +18,12 @@ void add_particle(const ParticleSet<Real>& set, std::size_t p, const Elasticity&
   double eps[kStrainComponents];
   for (int k = 0; k < kStrainComponents; ++k) eps[k] = set.strain[k][p];
   const double trace = eps[0] + eps[3] + eps[5];
-  const double square = eps[0] * eps[0] + eps[3] * eps[3] + eps[5] * eps[5] +
-                        2.0 * (eps[1] * eps[1] + eps[2] * eps[2] + eps[4] * eps[4]);
   ++sums.particles;
   sums.mass += mass;
   sums.volume += set.particle_volume * std::exp(trace);
   sums.kinetic_energy += 0.5 * mass * v.squaredNorm();
   sums.affine_energy += 0.5 * mass * affine_inertia * c.squaredNorm();
-  sums.elastic_energy +=
-      set.particle_volume * (elasticity.mu() * square + 0.5 * elasticity.lambda() * trace * trace);
+  sums.elastic_energy += set.particle_volume * material.energy_density(eps);
   sums.momentum += mass * v;
   // B = C D; its axial part is the angular momentum that the particle carries within (Jiang et al. 2015).
   const Vec3 axial(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
@@ -96,11 +89,11 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
     const bool near = std::any_of(solids.begin(), solids.end(),
                                   [&](const Solid& solid) { return solid.distance(center) < radius; });
     for (const auto& set : state.sets) {
-      const Elasticity& elasticity = elasticity_of(scene, set.material);
+      const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
         const Vec3 x = state.world(
             block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-        add_particle(set, p, elasticity, x, affine_inertia, blocks[owner]);
+        add_particle(set, p, material, x, affine_inertia, blocks[owner]);
         if (near) note_depth(solids, x, set.id[p], blocks[owner]);
       }
     }

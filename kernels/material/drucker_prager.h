@@ -70,6 +70,9 @@ struct DruckerPragerParameters {
     return 0.0;
   }
 
+  /// psi, J/m^3 of the volume at rest.
+  double energy_density(const double (&strain)[6]) const { return hencky_energy_density(elasticity, strain); }
+
   template <class Fields>
   void describe(Fields& fields) {
     elasticity.describe(fields);
