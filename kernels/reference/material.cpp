@@ -95,10 +95,21 @@ void stress(const HenckyConstants<Real>& elastic, const MaterialInput<Real>& in)
   }
 }
 
-#define REPOSE_FOR(Real)                                            \
-  template void trial(const MaterialInput<Real>&, double);          \
-  template void project_drucker_prager(const MaterialInput<Real>&); \
-  template void stress(const HenckyConstants<Real>&, const MaterialInput<Real>&);
+template <class Real>
+void stress(const NeoHookeanConstants<Real>& elastic, const MaterialInput<Real>& in) {
+  const double mu = elastic.mu, lambda = elastic.lambda;
+  for (std::size_t p = 0; p < in.count; ++p) {
+    const Symmetric strain = load(in.strain, p);
+    const Matrix tau = mu * full(expm1_twice(strain)) + lambda * full(strain).trace() * Matrix::Identity();
+    store(packed(tau), in.stress, p);
+  }
+}
+
+#define REPOSE_FOR(Real)                                                          \
+  template void trial(const MaterialInput<Real>&, double);                        \
+  template void project_drucker_prager(const MaterialInput<Real>&);               \
+  template void stress(const HenckyConstants<Real>&, const MaterialInput<Real>&); \
+  template void stress(const NeoHookeanConstants<Real>&, const MaterialInput<Real>&);
 REPOSE_FOR(float)
 REPOSE_FOR(double)
 #undef REPOSE_FOR

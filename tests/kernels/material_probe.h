@@ -19,6 +19,7 @@ namespace repose {
 using HWY_NAMESPACE::DruckerPrager;
 using HWY_NAMESPACE::HenckyElastic;
 using HWY_NAMESPACE::Materials;
+using HWY_NAMESPACE::NeoHookean;
 
 template <class Real>
 using Gradient = std::array<Real, 9>;

@@ -96,6 +96,19 @@ TYPED_TEST(MaterialReference, Stress_OfSandAndSolid_Agrees) {
   }
 }
 
+TYPED_TEST(MaterialReference, NeoHookeanStress_StrainsOfAllSizes_Agrees) {
+  const auto strains = strains_of_all_sizes<TypeParam>(kCount, 1e-6, 90);
+  NeoHookeanParameters rubber;
+  rubber.elasticity = golden_sand().elasticity;
+  const NeoHookeanConstants<TypeParam> elastic(rubber);
+  const auto expected = through(nullptr, strains, std::vector<Gradient<TypeParam>>(kCount), true,
+                                [&](const auto& in) { reference::stress<TypeParam>(elastic, in); });
+  // Pa, where b of a strain of 1 is up to e^4.
+  for (const auto& probe : probes<NeoHookean, TypeParam>(rubber)) {
+    expect_near(probe.stress(strains), expected, 50e6 * kTolerance<TypeParam>, probe.name());
+  }
+}
+
 TYPED_TEST(MaterialReference, HenckyStrainAndBack_IsTheIdentity) {
   for (const auto& strain : strains_of_all_sizes<double>(kCount, 1e-6, 89)) {
     const auto again = reference::half_log1p(reference::expm1_twice(strain), 1e-8);
