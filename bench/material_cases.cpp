@@ -1,5 +1,6 @@
 // Repose: trial strain, return map and stress of every material. A new one needs the overloads below: where its
-// elastic constants are, and, if it yields, the reference of its return map and the work of it.
+// elastic constants are, the work of its stress, and, if it yields, the reference of its return map and the
+// work of it.
 #include <memory>
 
 #include "bench/kernel_case.h"
@@ -19,9 +20,22 @@ template <class Real>
 const HenckyConstants<Real>& elastic_part(const DruckerPragerConstants<Real>& constants) {
   return constants.elastic;
 }
-template <class Real>
-const HenckyConstants<Real>& elastic_part(const HenckyConstants<Real>& constants) {
+template <class Constants>
+const Constants& elastic_part(const Constants& constants) {
   return constants;
+}
+
+template <class Real>
+Work stress_work(const DruckerPragerParameters&) {
+  return stress_hencky_work();
+}
+template <class Real>
+Work stress_work(const HenckyParameters&) {
+  return stress_hencky_work();
+}
+template <class Real>
+Work stress_work(const NeoHookeanParameters&) {
+  return stress_neo_hookean_work<Real>();
 }
 
 /// A call and the next one strain to and fro: a chunk that is worked on again and again stays near its strain.
@@ -48,7 +62,7 @@ void add_material(const Parameters& parameters, const MaterialKernels<Real>& ker
          [=](Workpiece<Real>& piece) { reference_project(*constants, piece.material(constants.get())); }});
   }
   cases.push_back(
-      {"stress" + of, 0, kChunk, stress_work(),
+      {"stress" + of, 0, kChunk, stress_work<Real>(parameters),
        [=](Workpiece<Real>& piece) { kernel.stress(piece.material(constants.get())); },
        [=](Workpiece<Real>& piece) { reference::stress(elastic_part(*constants), piece.material(nullptr)); }});
 }

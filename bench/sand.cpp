@@ -110,7 +110,7 @@ MaterialInput<Real> Workpiece<Real>::material(const void* constants) const {
   MaterialInput<Real> in;
   in.constants = constants;
   std::copy_n(strain(), kStrainComponents, in.strain);
-  std::copy_n(gradient(), kAffineComponents, in.affine);
+  std::copy_n(gradient(), kAffineComponents, in.gradient);
   std::copy_n(stress(), kStrainComponents, in.stress);
   in.dt = dt;
   in.count = kChunk;

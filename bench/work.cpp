@@ -144,9 +144,18 @@ template Work trial_work<float>();
 template Work trial_work<double>();
 
 /// 2 mu eps 6, trace 2, lambda tr 1, its sum 3.
-Work stress_work() {
+Work stress_hencky_work() {
   return {.read = 6, .near_written = 6, .flops = 12};
 }
+/// exp(2 eps) - I: doubling 6, norm 12, polynomial; its product with mu 6; the rest as above.
+template <class Real>
+Work stress_neo_hookean_work() {
+  const double exponential = 6 + 12 + polynomial_flops(std::size(MatrixPolynomials<Real>::kExpm1));
+  return {.read = 6, .near_written = 6, .flops = exponential + 12};
+}
+template Work stress_neo_hookean_work<float>();
+template Work stress_neo_hookean_work<double>();
+
 /// Trace and mean 3, deviator 3, its norm 13, dg 2, share kept 2, product and mean 9.
 Work project_drucker_prager_work() {
   return {.read = 6, .written = 6, .flops = 32};

@@ -30,7 +30,9 @@ Work interpolate_work(std::size_t stencil, double run);
 /// For strains small enough for the polynomials, as those of sand are.
 template <class Real>
 Work trial_work();
-Work stress_work();
+Work stress_hencky_work();
+template <class Real>
+Work stress_neo_hookean_work();
 Work project_drucker_prager_work();
 
 Work advance_work();

@@ -116,7 +116,7 @@ MeasurePass<Real> surface_pass(const ProbeDescription& probe, const Vec3& up) {
 /// Sums over the particles of a state: kinetic, affine, elastic and potential energy.
 template <class Real>
 struct EnergySum {
-  std::vector<Elasticity> elasticity;  // per set
+  std::vector<MaterialParameters> laws;  // per set
   Vec3 gravity;
   double affine_inertia;
 
@@ -130,7 +130,7 @@ struct EnergySum {
         for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
           const Vec3 x = state.world(
               block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-          const ParticleEnergy energy = particle_energy(set, p, elasticity[k], affine_inertia);
+          const ParticleEnergy energy = particle_energy(set, p, laws[k], affine_inertia);
           all[0] += energy.kinetic;
           all[1] += energy.affine;
           all[2] += energy.elastic;
@@ -217,7 +217,7 @@ void Probes::add_to_nodes(Assembly<Real>& assembly) const {
   EnergySum<Real> energy{{},
                          assembly.surroundings.gravity,
                          assembly.state.spacing * assembly.state.spacing / plan.transfer.nodes().inverse_d};
-  for (const SetDescription& set : assembly.sets) energy.elasticity.push_back(set.elasticity());
+  for (const SetDescription& set : assembly.sets) energy.laws.push_back(set.parameters);
   std::size_t flow = 0;
   for (const ProbeDescription& probe : list) {
     switch (probe.type) {

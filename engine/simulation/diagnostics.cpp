@@ -8,21 +8,17 @@
 namespace repose {
 namespace {
 
-const Elasticity& elasticity_of(const Scene& scene, int material) {
-  return scene.materials[static_cast<std::size_t>(material)].elasticity();
-}
-
 /// Adds one particle to the sums of its block.
 template <class Real>
-void add_particle(const ParticleSet<Real>& set, std::size_t p, const Elasticity& elasticity, const Vec3& x,
-                  double affine_inertia, Diagnostics& sums) {
+void add_particle(const ParticleSet<Real>& set, std::size_t p, const MaterialDescription& material,
+                  const Vec3& x, double affine_inertia, Diagnostics& sums) {
   const double mass = set.particle_mass;
   Vec3 v;
   Mat3 c;
   for (int axis = 0; axis < 3; ++axis) v[axis] = set.velocity[axis][p];
   for (int k = 0; k < kAffineComponents; ++k) c(k / 3, k % 3) = set.keeps_affine ? set.affine[k][p] : Real(0);
   const double trace = double(set.strain[0][p]) + double(set.strain[3][p]) + double(set.strain[5][p]);
-  const ParticleEnergy energy = particle_energy(set, p, elasticity, affine_inertia);
+  const ParticleEnergy energy = particle_energy(set, p, material.parameters, affine_inertia);
   ++sums.particles;
   sums.mass += mass;
   sums.volume += set.particle_volume * std::exp(trace);
@@ -94,11 +90,11 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
     const bool near = std::any_of(solids.begin(), solids.end(),
                                   [&](const Solid& solid) { return solid.distance(center) < radius; });
     for (const auto& set : state.sets) {
-      const Elasticity& elasticity = elasticity_of(scene, set.material);
+      const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
         const Vec3 x = state.world(
             block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-        add_particle(set, p, elasticity, x, affine_inertia, blocks[owner]);
+        add_particle(set, p, material, x, affine_inertia, blocks[owner]);
         if (near) note_depth(solids, x, set.id[p], blocks[owner]);
       }
     }

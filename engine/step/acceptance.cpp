@@ -97,7 +97,7 @@ std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::si
     in.particles = chunk.particles;
     in.lattice = lattice;
     for (std::size_t axis = 0; axis < 3; ++axis) in.moving[axis] = mine.velocity.data() + axis * kChunk;
-    for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = mine.affine.data() + k * kChunk;
+    for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = mine.gradient.data() + k * kChunk;
     kernel(in, mine.arena.data());
     const std::size_t p =
         plan_.kernels->inspect(in.moving, in.gradient, chunk.particles.count, dt, lattice.spacing);

@@ -27,7 +27,7 @@ struct Scratch {
   AlignedArray<Real> stress{kStrainComponents * kChunk};
   AlignedArray<Real> velocity{3 * kChunk};
   AlignedArray<Real> before{3 * kChunk};  ///< velocity before forces, at the particles
-  AlignedArray<Real> affine{kAffineComponents * kChunk};
+  AlignedArray<Real> gradient{kAffineComponents * kChunk};
   /// One number per particle, from the first half of an effect to its second.
   AlignedArray<Real> value{kChunk};
   /// Where sand yields by numbers of its own: they, and what yielding did (YieldInput).

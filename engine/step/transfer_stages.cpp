@@ -16,7 +16,7 @@ MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, Chunk<
     in.strain[k] = chunk.particles.strain[k];
     in.stress[k] = chunk.scratch.stress.data() + static_cast<std::size_t>(k) * kChunk;
   }
-  for (int k = 0; k < kAffineComponents; ++k) in.affine[k] = chunk.moving_gradient[k];
+  for (int k = 0; k < kAffineComponents; ++k) in.gradient[k] = chunk.moving_gradient[k];
   return in;
 }
 
@@ -101,7 +101,7 @@ ParticlePass<Real> gather_pass(const StepPlan<Real>& plan, const Lattice<Real>& 
               in.moving[axis] = scratch.velocity.data() + axis * kChunk;
             }
             for (std::size_t k = 0; gradient_apart && k < kAffineComponents; ++k) {
-              in.gradient[k] = scratch.affine.data() + k * kChunk;
+              in.gradient[k] = scratch.gradient.data() + k * kChunk;
             }
             kernel(in, scratch.arena.data());
             std::copy_n(apart ? in.moving : in.velocity, 3, chunk.moving_velocity);

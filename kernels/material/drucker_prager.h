@@ -91,6 +91,9 @@ struct DruckerPragerParameters {
     return 3.0 * slope_over_sine(std::sin(phi)) * std::cos(phi) * cohesion / (2.0 * elasticity.mu());
   }
 
+  /// psi, J/m^3 of the volume at rest.
+  double energy_density(const double (&strain)[6]) const { return hencky_energy_density(elasticity, strain); }
+
   template <class Fields>
   void describe(Fields& fields) {
     elasticity.describe(fields);

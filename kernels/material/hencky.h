@@ -15,6 +15,14 @@ namespace repose {
 template <class Real>
 struct HenckyConstants;
 
+/// psi of any material whose elasticity is Hencky's, J/m^3 of the volume at rest.
+inline double hencky_energy_density(const Elasticity& elasticity, const double (&strain)[6]) {
+  const double trace = strain[0] + strain[3] + strain[5];
+  const double square = strain[0] * strain[0] + strain[3] * strain[3] + strain[5] * strain[5] +
+                        2.0 * (strain[1] * strain[1] + strain[2] * strain[2] + strain[4] * strain[4]);
+  return elasticity.mu() * square + 0.5 * elasticity.lambda() * trace * trace;
+}
+
 /// An elastic solid.
 struct HenckyParameters {
   static constexpr const char* kName = "elastic";
@@ -24,6 +32,9 @@ struct HenckyParameters {
   using Constants = HenckyConstants<Real>;
 
   Elasticity elasticity{.density = 1000.0, .youngs_modulus = 1.0e6, .poisson_ratio = 0.3};
+
+  /// psi, J/m^3 of the volume at rest.
+  double energy_density(const double (&strain)[6]) const { return hencky_energy_density(elasticity, strain); }
 
   template <class Fields>
   void describe(Fields& fields) {

@@ -7,10 +7,11 @@
 
 #include "kernels/material/drucker_prager.h"
 #include "kernels/material/hencky.h"
+#include "kernels/material/neo_hookean.h"
 
 namespace repose {
 
-using MaterialParameters = std::variant<DruckerPragerParameters, HenckyParameters>;
+using MaterialParameters = std::variant<DruckerPragerParameters, HenckyParameters, NeoHookeanParameters>;
 
 }  // namespace repose
 #endif
@@ -27,12 +28,13 @@ using MaterialParameters = std::variant<DruckerPragerParameters, HenckyParameter
 
 #include "kernels/material/drucker_prager.h"
 #include "kernels/material/hencky.h"
+#include "kernels/material/neo_hookean.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
 namespace HWY_NAMESPACE {
 
-using Materials = std::tuple<DruckerPrager, HenckyElastic>;
+using Materials = std::tuple<DruckerPrager, HenckyElastic, NeoHookean>;
 
 template <class... Law>
 constexpr bool same_order(std::tuple<Law...>*) {

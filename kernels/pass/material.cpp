@@ -43,7 +43,7 @@ void trial(const MaterialInput<T>& in) {
     prefetch_strain(in, first);
     Mat3<Pack<T>> step;
     HWY_UNROLL(9)
-    for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * Pack<T>::load_first(in.affine[k] + first, lanes);
+    for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * Pack<T>::load_first(in.gradient[k] + first, lanes);
     store_sym3(hencky_trial(load_sym3<T>(in.strain, first, lanes), step), in.strain, first, lanes);
   }
 }

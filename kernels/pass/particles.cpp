@@ -48,14 +48,15 @@ void advance(const ParticleSpan<T>& particles, const T* const velocity[3], const
 }
 
 template <class T>
-std::size_t inspect(const T* const velocity[3], const T* const affine[9], std::size_t count, T dt, T spacing) {
+std::size_t inspect(const T* const velocity[3], const T* const gradient[9], std::size_t count, T dt,
+                    T spacing) {
   using P = Pack<T>;
   const P step(dt), most(spacing / dt), zero(T(0)), one(T(1));
   for (const auto [first, lanes] : packs<T>(count)) {
     Mat3<P> map;
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) {
-      map.m[k / 3][k % 3] = step * P::load_first(affine[k] + first, lanes) + (k % 4 == 0 ? one : zero);
+      map.m[k / 3][k % 3] = step * P::load_first(gradient[k] + first, lanes) + (k % 4 == 0 ? one : zero);
     }
     // False for a NaN; an infinite entry makes the determinant a NaN or infinite.
     const P volume_ratio = determinant(map);

@@ -82,8 +82,8 @@ template <class Real>
 struct MaterialInput {
   const void* constants;  ///< the material's Constants<Real>
   Real* strain[kStrainComponents];
-  const Real* affine[kAffineComponents];  ///< velocity gradient, 1/s
-  Real* stress[kStrainComponents];        ///< out, Pa
+  const Real* gradient[kAffineComponents];  ///< of velocity, 1/s; not the stored C
+  Real* stress[kStrainComponents];          ///< out, Pa
   Real dt;
   std::size_t count;
   std::ptrdiff_t ahead = 0;  ///< as in ParticleSpan
@@ -168,8 +168,8 @@ struct Kernels {
                   Real cells_per_velocity, Motion<Real>&);
   /// Index of the first particle whose trial motion must not be accepted, or count: it would cross more than a
   /// cell, det(I + dt grad v) <= 0, or a value is not finite.
-  std::size_t (*inspect)(const Real* const velocity[3], const Real* const affine[9], std::size_t count, Real dt,
-                         Real spacing);
+  std::size_t (*inspect)(const Real* const velocity[3], const Real* const gradient[9], std::size_t count,
+                         Real dt, Real spacing);
   void (*open_volume)(Real* const strain[6], const Real* gained, Real* trace, std::size_t count);
   /// cone <- that of the plastic shear q of each particle.
   void (*harden)(const Real* q, const HardeningConstants<Real>& law, Real* cone, std::size_t count);

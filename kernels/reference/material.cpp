@@ -59,7 +59,7 @@ template <class Real>
 void trial(const MaterialInput<Real>& in, double least) {
   for (std::size_t p = 0; p < in.count; ++p) {
     Matrix g;
-    for (int k = 0; k < 9; ++k) g(k / 3, k % 3) = double{in.dt} * in.affine[k][p];
+    for (int k = 0; k < 9; ++k) g(k / 3, k % 3) = double{in.dt} * in.gradient[k][p];
     const Matrix e = full(expm1_twice(load(in.strain, p)));
     // (I + g)(I + e)(I + g)^T - I without the cancelling ones.
     const Matrix pushed = e + g + g * e;
@@ -95,10 +95,21 @@ void stress(const HenckyConstants<Real>& elastic, const MaterialInput<Real>& in)
   }
 }
 
-#define REPOSE_FOR(Real)                                            \
-  template void trial(const MaterialInput<Real>&, double);          \
-  template void project_drucker_prager(const MaterialInput<Real>&); \
-  template void stress(const HenckyConstants<Real>&, const MaterialInput<Real>&);
+template <class Real>
+void stress(const NeoHookeanConstants<Real>& elastic, const MaterialInput<Real>& in) {
+  const double mu = elastic.mu, lambda = elastic.lambda;
+  for (std::size_t p = 0; p < in.count; ++p) {
+    const Symmetric strain = load(in.strain, p);
+    const Matrix tau = mu * full(expm1_twice(strain)) + lambda * full(strain).trace() * Matrix::Identity();
+    store(packed(tau), in.stress, p);
+  }
+}
+
+#define REPOSE_FOR(Real)                                                          \
+  template void trial(const MaterialInput<Real>&, double);                        \
+  template void project_drucker_prager(const MaterialInput<Real>&);               \
+  template void stress(const HenckyConstants<Real>&, const MaterialInput<Real>&); \
+  template void stress(const NeoHookeanConstants<Real>&, const MaterialInput<Real>&);
 REPOSE_FOR(float)
 REPOSE_FOR(double)
 #undef REPOSE_FOR

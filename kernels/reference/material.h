@@ -30,4 +30,8 @@ void project_drucker_prager(const MaterialInput<Real>& in);
 template <class Real>
 void stress(const HenckyConstants<Real>& elastic, const MaterialInput<Real>& in);
 
+/// stress <- mu (exp(2 strain) - I) + lambda tr(strain) I.
+template <class Real>
+void stress(const NeoHookeanConstants<Real>& elastic, const MaterialInput<Real>& in);
+
 }  // namespace repose::reference

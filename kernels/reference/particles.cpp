@@ -42,10 +42,10 @@ void advance(const ParticleSpan<Real>& particles, const Real* const velocity[3],
 }
 
 template <class Real>
-std::size_t inspect(const Real* const velocity[3], const Real* const affine[9], std::size_t count, Real dt,
+std::size_t inspect(const Real* const velocity[3], const Real* const gradient[9], std::size_t count, Real dt,
                     Real spacing) {
   for (std::size_t p = 0; p < count; ++p) {
-    const double ratio = volume_ratio(affine, p, double{dt});
+    const double ratio = volume_ratio(gradient, p, double{dt});
     bool good = ratio > 0 && std::isfinite(static_cast<Real>(ratio));
     for (int axis = 0; axis < 3; ++axis) good = good && std::fabs(velocity[axis][p]) <= spacing / dt;
     if (!good) return p;

@@ -203,7 +203,7 @@ TEST(SceneErrors, UnknownChoice_NamesAll) {
   EXPECT_EQ(
       errors(with("drucker_prager", "druker_prager")),
       "s.json:5:34: materials.sand.type: found text \"druker_prager\"; expected one of \"drucker_prager\", "
-      "\"elastic\"; did you mean \"drucker_prager\"?");
+      "\"elastic\", \"neo_hookean\"; did you mean \"drucker_prager\"?");
 }
 
 TEST(SceneErrors, Missing_StandsAtTheObject) {

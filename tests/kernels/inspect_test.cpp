@@ -23,7 +23,7 @@ constexpr Real kOneCell = Real(64);
 /// Motions of `count` particles, harmless until a test spoils one; what lies behind them would be refused.
 template <class Real>
 struct Trial {
-  std::vector<Real> velocity[3], affine[9];
+  std::vector<Real> velocity[3], gradient[9];
   std::size_t count;
 
   explicit Trial(std::size_t size) : count(size) {
@@ -32,7 +32,7 @@ struct Trial {
       for (std::size_t p = 0; p < size; ++p) channel.push_back(static_cast<Real>(samples.uniform(-60, 60)));
       channel.resize(size + 16, std::numeric_limits<Real>::quiet_NaN());
     }
-    for (auto& channel : affine) {  // dt C to 0.2: the determinant stays above 0.3
+    for (auto& channel : gradient) {  // dt G to 0.2: the determinant stays above 0.3
       for (std::size_t p = 0; p < size; ++p) channel.push_back(static_cast<Real>(samples.uniform(-200, 200)));
       channel.resize(size + 16, std::numeric_limits<Real>::quiet_NaN());
     }
@@ -40,13 +40,13 @@ struct Trial {
 
   std::size_t inspect(Target target) const {
     const Real* v[3] = {velocity[0].data(), velocity[1].data(), velocity[2].data()};
-    const Real* c[9];
-    for (int k = 0; k < 9; ++k) c[k] = affine[k].data();
-    return kernels<Real>(target).inspect(v, c, count, kStep<Real>, kSpacing<Real>);
+    const Real* g[9];
+    for (int k = 0; k < 9; ++k) g[k] = gradient[k].data();
+    return kernels<Real>(target).inspect(v, g, count, kStep<Real>, kSpacing<Real>);
   }
 
   void set_gradient(std::size_t p, const std::array<double, 9>& dt_times_gradient) {
-    for (int k = 0; k < 9; ++k) affine[k][p] = static_cast<Real>(dt_times_gradient[k] / kStep<Real>);
+    for (int k = 0; k < 9; ++k) gradient[k][p] = static_cast<Real>(dt_times_gradient[k] / kStep<Real>);
   }
 };
 
@@ -110,7 +110,7 @@ TYPED_TEST(Inspect, NanInAnyValue_IsNamed) {
   constexpr TypeParam kNan = std::numeric_limits<TypeParam>::quiet_NaN();
   for (int k = 0; k < 12; ++k) {
     expect_named<TypeParam>(
-        [&](auto& trial, std::size_t p) { (k < 3 ? trial.velocity[k] : trial.affine[k - 3])[p] = kNan; },
+        [&](auto& trial, std::size_t p) { (k < 3 ? trial.velocity[k] : trial.gradient[k - 3])[p] = kNan; },
         "value " + std::to_string(k));
   }
 }
@@ -124,7 +124,7 @@ TYPED_TEST(Inspect, InfinityInAnyValue_IsNamed) {
         expect_named<TypeParam>(
             [&](auto& trial, std::size_t p) {
               if (alone) trial.set_gradient(p, {});
-              (k < 3 ? trial.velocity[k] : trial.affine[k - 3])[p] = bad;
+              (k < 3 ? trial.velocity[k] : trial.gradient[k - 3])[p] = bad;
             },
             "value " + std::to_string(k) + (alone ? " alone" : ""));
       }

@@ -149,10 +149,10 @@ TYPED_TEST(InstructionSets, AdvanceAndInspect_SameBits) {
       const Kernels<TypeParam>& table = kernels<TypeParam>(kBoth[set]);
       auto span = particles[set].span();
       const TypeParam* velocity[3] = {span.velocity[0], span.velocity[1], span.velocity[2]};
-      const TypeParam* affine[9];
-      std::copy_n(span.affine, 9, affine);
-      table.advance(span, velocity, affine, TypeParam(0.3), motion[set]);
-      inspected[set] = table.inspect(velocity, affine, count, TypeParam(0.008), TypeParam(0.01));
+      const TypeParam* gradient[9];
+      std::copy_n(span.affine, 9, gradient);
+      table.advance(span, velocity, gradient, TypeParam(0.3), motion[set]);
+      inspected[set] = table.inspect(velocity, gradient, count, TypeParam(0.008), TypeParam(0.01));
     }
     EXPECT_EQ(std::memcmp(&motion[0], &motion[1], sizeof(motion[0])), 0) << count;
     EXPECT_EQ(inspected[0], inspected[1]) << count;

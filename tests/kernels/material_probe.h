@@ -19,6 +19,7 @@ namespace repose {
 using HWY_NAMESPACE::DruckerPrager;
 using HWY_NAMESPACE::HenckyElastic;
 using HWY_NAMESPACE::Materials;
+using HWY_NAMESPACE::NeoHookean;
 
 template <class Real>
 using Gradient = std::array<Real, 9>;
@@ -90,7 +91,7 @@ class MaterialProbe {
   Strains through_kernel(Pass pass, const Strains& strains, const std::vector<Gradient<Real>>& gradients,
                          Real dt, bool want_stress) const {
     const std::size_t count = strains.size();
-    std::vector<Real> strain[6], stress[6], affine[9];
+    std::vector<Real> strain[6], stress[6], gradient[9];
     MaterialInput<Real> in{&constants_, {}, {}, {}, dt, count};
     for (int k = 0; k < 6; ++k) {
       for (const auto& s : strains) strain[k].push_back(s[k]);
@@ -100,8 +101,8 @@ class MaterialProbe {
       in.stress[k] = stress[k].data();
     }
     for (int k = 0; k < 9; ++k) {
-      for (const auto& g : gradients) affine[k].push_back(g[k]);
-      in.affine[k] = affine[k].data();
+      for (const auto& g : gradients) gradient[k].push_back(g[k]);
+      in.gradient[k] = gradient[k].data();
     }
     pass(in);
     Strains out(count);

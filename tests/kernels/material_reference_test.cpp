@@ -35,7 +35,7 @@ std::vector<Symmetric<Real>> through(const void* constants, const std::vector<Sy
   }
   for (int k = 0; k < 9; ++k) {
     for (const auto& g : gradients) gradient[k].push_back(g[k]);
-    in.affine[k] = gradient[k].data();
+    in.gradient[k] = gradient[k].data();
   }
   pass(in);
   std::vector<Symmetric<Real>> out(strains.size());
@@ -93,6 +93,19 @@ TYPED_TEST(MaterialReference, Stress_OfSandAndSolid_Agrees) {
   solid.elasticity = golden_sand().elasticity;
   for (const auto& probe : probes<HenckyElastic, TypeParam>(solid)) {
     expect_near(probe.stress(strains), expected, 1e6 * kTolerance<TypeParam>, probe.name());
+  }
+}
+
+TYPED_TEST(MaterialReference, NeoHookeanStress_StrainsOfAllSizes_Agrees) {
+  const auto strains = strains_of_all_sizes<TypeParam>(kCount, 1e-6, 90);
+  NeoHookeanParameters rubber;
+  rubber.elasticity = golden_sand().elasticity;
+  const NeoHookeanConstants<TypeParam> elastic(rubber);
+  const auto expected = through(nullptr, strains, std::vector<Gradient<TypeParam>>(kCount), true,
+                                [&](const auto& in) { reference::stress<TypeParam>(elastic, in); });
+  // Pa, where b of a strain of 1 is up to e^4.
+  for (const auto& probe : probes<NeoHookean, TypeParam>(rubber)) {
+    expect_near(probe.stress(strains), expected, 50e6 * kTolerance<TypeParam>, probe.name());
   }
 }
 
