@@ -118,7 +118,7 @@ Error Run::other_scene(Error error) const {
 }
 
 Result<FrameReport> Run::advance(Progress& progress) {
-  const double fps = scene_.time.frames_per_second;
+  const Clock clock = clock_of(scene_.time);
   const auto start = std::chrono::steady_clock::now();
   std::int64_t steps = 0;
   return simulation_->advance_frame([&](const StepReport& step, const Counters& counters) {
@@ -134,7 +134,8 @@ Result<FrameReport> Run::advance(Progress& progress) {
                     static_cast<long long>(counters.frame) + 1, static_cast<long long>(frames_.last),
                     static_cast<long long>(counters.step), step.dt, limit_name(step.limit),
                     simulation_->particles(), simulation_->memory().blocks, ns);
-      progress.update(counters.time * fps, detail);
+      progress.update(
+          static_cast<double>(counters.frame) + counters.time_in_frame / clock.length(counters.frame), detail);
     }
     return g_signal == 0;
   });

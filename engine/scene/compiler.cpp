@@ -405,7 +405,7 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
 }
 
 double last_frame_time(const Scene& scene) {
-  return static_cast<double>(scene.time.frames) / scene.time.frames_per_second;
+  return clock_of(scene.time).at(scene.time.frames);
 }
 
 double emitted_by(const Scene& scene, double time) {

@@ -113,6 +113,16 @@ void describe_time(Fields& fields, TimeDescription& time) {
   fields.integer("frames", time.frames, {.meaning = "frames to simulate", .low = 1.0, .high = 1.0e9});
   fields.number("frames_per_second", time.frames_per_second,
                 {.unit = "1/s", .meaning = "frames in a second of the scene", .low = 0.0, .low_open = true});
+  fields.rows(
+      "scale", time.scale, 2,
+      {.meaning = "slow motion: keys (seconds of the film, scene seconds per film second), linear between; "
+                  "without it, 1",
+       .low = 0.0});
+  const auto steps_back = [](const auto& a, const auto& b) { return b[0] <= a[0]; };
+  fields.check(std::adjacent_find(time.scale.begin(), time.scale.end(), steps_back) == time.scale.end(),
+               "scale", "must ascend in time, for example [[0, 1], [2, 1], [2.5, 0.1]]");
+  fields.check(std::all_of(time.scale.begin(), time.scale.end(), [](const auto& key) { return key[1] > 0.0; }),
+               "scale", "must be above 0: time does not stand still");
   fields.number("max_step", time.max_step,
                 {.unit = "s",
                  .meaning = "upper bound of the time step beside the limits below",

@@ -13,6 +13,7 @@
 #include "engine/effect/effects.h"
 #include "engine/geometry/seeding.h"
 #include "engine/geometry/shape.h"
+#include "engine/scene/clock.h"
 #include "kernels/layout/stencil.h"
 #include "kernels/material/materials.h"
 #include "kernels/transfer/transfers.h"
@@ -45,12 +46,17 @@ struct GridDescription {
 struct TimeDescription {
   std::int64_t frames = 48;
   double frames_per_second = 24.0;
+  std::vector<std::vector<double>> scale;  ///< slow motion: rows (film time in s, scene seconds per film second)
   double max_step = 1.0;  ///< s; an upper bound beside the limits below
   double cfl = 0.6;       ///< cells that matter may cross in a step
   double sound = 0.5;     ///< cells that a compression wave may cross in a step
   double isolated = 0.9;  ///< share of the stability limit of one particle alone
   double strain = 0.5;    ///< largest velocity gradient times step
 };
+
+inline Clock clock_of(const TimeDescription& time) {
+  return {time.frames_per_second, time.scale};
+}
 
 struct MaterialDescription {
   std::string name;

@@ -148,7 +148,7 @@ class SimulationOf final : public Simulation {
 
 template <class Real>
 Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callback) {
-  const double fps = scene_.time.frames_per_second;
+  const Clock clock = clock_of(scene_.time);
   Counters& counters = state_.counters;
   FrameReport frame;
   frame.resumed = counters.time_in_frame > 0.0;
@@ -159,7 +159,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   frame.least_dt = std::numeric_limits<double>::infinity();
   const Profile before = stepper_.profile();
   const auto start = std::chrono::steady_clock::now();
-  const double length = 1.0 / fps;
+  const double begin = clock.at(counters.frame), length = clock.length(counters.frame);
   while (counters.time_in_frame < length) {
     const double remaining = length - counters.time_in_frame;
     const auto tried = try_step(remaining);
@@ -169,7 +169,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
     const bool last = report.dt >= remaining * (1.0 - 1e-9);
     counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;
-    counters.time = static_cast<double>(counters.frame) / fps + counters.time_in_frame;
+    counters.time = begin + counters.time_in_frame;
     ++frame.steps;
     ++frame.limits[static_cast<std::size_t>(report.limit)];
     frame.least_dt = std::min(frame.least_dt, report.dt);
@@ -180,7 +180,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   if (counters.time_in_frame >= length) {
     counters.time_in_frame = 0.0;
     ++counters.frame;
-    counters.time = static_cast<double>(counters.frame) / fps;
+    counters.time = clock.at(counters.frame);
     if (auto ended = unless_memory_ends([&] { return stepper_.end_frame(state_); }); !ended)
       return ended.error();
   }
