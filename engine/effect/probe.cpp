@@ -46,7 +46,7 @@ void describe(Fields& fields, ProbeDescription& probe) {
 }
 
 PassDescription description(const ProbeDescription& probe, std::vector<std::string> reads) {
-  return {"probe " + probe.name, "probes", std::move(reads), {}};
+  return {"probe " + probe.name, "probes", std::move(reads), {"report"}};
 }
 
 template <class Real>
@@ -66,8 +66,9 @@ MeasurePass<Real> force_pass(const ProbeDescription& probe, std::shared_ptr<Cont
   pass.report = [name = probe.name, about = probe.about](const State<Real>&, const double* tallies,
                                                          std::vector<Measurement>& report) {
     const double time = tallies[0] > 0.0 ? tallies[0] : 1.0;
-    const Vec3 impulse(-tallies[1], -tallies[2], -tallies[3]);
-    const Vec3 moment = Vec3(-tallies[4], -tallies[5], -tallies[6]) - about.cross(impulse);
+    // Less than nothing rather than a minus sign, which would report -0 where nothing touches.
+    const Vec3 impulse(0.0 - tallies[1], 0.0 - tallies[2], 0.0 - tallies[3]);
+    const Vec3 moment = Vec3(0.0 - tallies[4], 0.0 - tallies[5], 0.0 - tallies[6]) - about.cross(impulse);
     const auto add = [&](const char* quantity, const char* unit, const Vec3& value) {
       for (int axis = 0; axis < 3; ++axis) {
         report.push_back({name, std::string(quantity) + "." + "xyz"[axis], unit, value[axis]});
@@ -251,7 +252,7 @@ template <class Real>
 void Probes::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
   if (flows_ == nullptr) return;
   assembly.plan.gather[set].push_back(
-      {{"count flow", "probes", {"position", "sides"}, {}},
+      {{"count flow", "probes", {"position", "sides"}, {"crossings"}},
        [flows = flows_, set](Chunk<Real>& chunk) { flows->count(chunk, set); }});
 }
 

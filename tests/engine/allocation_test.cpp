@@ -74,11 +74,12 @@ class Allocation : public ::testing::TestWithParam<int> {
   }
 };
 
-TEST_P(Allocation, WarmStepWithoutNewBlocks_None) {
-  const auto scene = read_scene_text(kSettled, "settled", ".");
+/// Counts in a hundred warm steps of the settled box.
+void expect_no_allocation(int threads, const std::vector<std::string>& overrides) {
+  const auto scene = read_scene_text(kSettled, "settled", ".", {overrides, false});
   ASSERT_TRUE(scene) << scene.error().text();
   SimulationOptions options;
-  options.threads = GetParam();
+  options.threads = threads;
   auto simulation = Simulation::create(*scene, options);
   ASSERT_TRUE(simulation) << simulation.error().text();
   for (int step = 0; step < 150; ++step) ASSERT_TRUE((*simulation)->step());
@@ -94,6 +95,19 @@ TEST_P(Allocation, WarmStepWithoutNewBlocks_None) {
     ++quiet;
   }
   EXPECT_GE(quiet, 90);
+}
+
+TEST_P(Allocation, WarmStepWithoutNewBlocks_None) {
+  expect_no_allocation(GetParam(), {});
+}
+
+TEST_P(Allocation, WarmStepWithSolidsThatMovePinsAndProbes_None) {
+  expect_no_allocation(GetParam(), {R"json(colliders[0].motion={"keys": [
+      {"time": 0}, {"time": 1, "rotation_angle": 1, "translation": [0.001, 0, 0]}], "interpolation": "smooth"})json",
+                                    R"json(probes=[{"name": "w", "type": "force", "collider": "walls"},
+      {"name": "d", "type": "flow", "point": [0, 0.05, 0]}, {"name": "e", "type": "energy"}])json",
+                                    R"json(pins=[{"name": "p",
+      "shape": {"type": "sphere", "center": [0.08, 0.06, 0.08], "radius": 0.03}}])json"});
 }
 
 /// A cube of 8^3 blocks; ids decide velocities, so that the state is the same for any order of storage.

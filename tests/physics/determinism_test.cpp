@@ -29,6 +29,21 @@ constexpr const char* kTwoBodies = R"json({"repose": 1, "name": "two_bodies", "g
                  "shape": {"type": "sphere", "center": [0.15, 0.06, 0], "radius": 0.06}}],
   "volume_correction": {}})json";
 
+/// A paddle turns in sand whose corner a pin holds, on a floor that slides; all of it measured.
+constexpr const char* kMoving = R"json({"repose": 1, "name": "moving", "grid": {"spacing": 0.01},
+  "materials": {"sand": {"type": "drucker_prager"}},
+  "bodies": [{"name": "sand", "material": "sand",
+              "shape": {"type": "box", "lower": [-0.1, 0, -0.1], "upper": [0.1, 0.06, 0.1]}}],
+  "colliders": [{"name": "floor", "shape": {"type": "plane"}, "friction": 0.6,
+                 "motion": {"keys": [{"time": 0}, {"time": 1, "translation": [0.5, 0, 0.2]}]}},
+                {"name": "paddle", "friction": 0.3,
+                 "shape": {"type": "box", "lower": [-0.02, -0.1, -0.07], "upper": [0.02, 0.2, 0.07]},
+                 "motion": {"interpolation": "smooth", "repeat": true, "keys": [
+                   {"time": 0}, {"time": 0.03, "rotation_angle": 100}, {"time": 0.1, "rotation_angle": 360}]}}],
+  "pins": [{"name": "corner", "shape": {"type": "sphere", "center": [0.1, 0.03, 0.1], "radius": 0.03}}],
+  "probes": [{"name": "paddle", "type": "force", "collider": "paddle"}, {"name": "all", "type": "energy"},
+             {"name": "door", "type": "flow", "normal": [1, 0, 0]}]})json";
+
 struct Case {
   const char* name;
   const char* file;  ///< of apps/scenes; null: `text` is the scene
@@ -48,6 +63,7 @@ std::vector<Case> cases() {
        {R"json(bodies.column.shape.upper=["= 64 * dx", "= 37 * dx", "= 64 * dx"])json"}},
       {"two_bodies", nullptr, kTwoBodies, {}},
       {"two_bodies_double", nullptr, kTwoBodies, {"grid.precision=double"}},
+      {"moving", nullptr, kMoving, {}},
       {"column", "column.json", nullptr, {"parameters.cells=10", "parameters.aspect=2"}},
       {"hourglass", "hourglass.json", nullptr, {"grid.spacing=0.006"}},
       {"bunny", "bunny.json", nullptr, {"grid.spacing=0.01"}},
