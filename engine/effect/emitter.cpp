@@ -75,8 +75,8 @@ void describe(Fields& fields, Emitter& emitter) {
                  {.meaning = "particles in a full cell", .low = 1.0, .high = 512.0});
   fields.integer("seed", emitter.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
   fields.number("start", emitter.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
-  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; 0: never", .low = 0.0});
-  fields.check(emitter.end == 0.0 || emitter.end > emitter.start, "end", "must be after \"start\", or 0");
+  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; without it, never", .low = 0.0});
+  fields.check(emitter.end > emitter.start, "end", "must come after \"start\"");
   fields.number(
       "spread", emitter.spread,
       {.meaning = "largest random velocity of a particle, as a share of its speed", .low = 0.0, .high = 1.0});

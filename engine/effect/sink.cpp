@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace repose {
 namespace {
@@ -13,8 +12,8 @@ void describe(Fields& fields, Sink& sink) {
   fields.object("shape", present, true, "particles within it end", [&](Fields& f) { describe(f, sink.shape); });
   fields.flag("outside", sink.outside, "particles outside the shape end: it is a domain");
   fields.number("start", sink.start, {.unit = "s", .meaning = "from when on", .low = 0.0});
-  fields.number("end", sink.end, {.unit = "s", .meaning = "until when; 0: always", .low = 0.0});
-  fields.check(sink.end == 0.0 || sink.end > sink.start, "end", "must be after \"start\", or 0");
+  fields.number("end", sink.end, {.unit = "s", .meaning = "until when; without it, always", .low = 0.0});
+  fields.check(sink.end > sink.start, "end", "must come after \"start\"");
 }
 
 struct BuiltSink {
@@ -128,8 +127,7 @@ template <class Real>
 void Sinks::add_to_nodes(Assembly<Real>& assembly) const {
   std::vector<BuiltSink> sinks;
   for (std::size_t s = 0; s < list.size(); ++s) {
-    const double end = list[s].end > 0.0 ? list[s].end : std::numeric_limits<double>::infinity();
-    sinks.push_back({shapes_[s], list[s].outside, list[s].start, end});
+    sinks.push_back({shapes_[s], list[s].outside, list[s].start, list[s].end});
   }
   const auto runtime = std::make_shared<SinkRuntime<Real>>(std::move(sinks), assembly.surroundings.flat_axis);
   assembly.plan.events.push_back(

@@ -4,6 +4,7 @@
 // until then.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,9 +17,9 @@ namespace repose {
 struct Sink {
   std::string name;
   ShapeDescription shape;
-  bool outside = false;  ///< removes what is outside the shape
-  double start = 0.0;    ///< s
-  double end = 0.0;      ///< s; 0: never
+  bool outside = false;                                  ///< removes what is outside the shape
+  double start = 0.0;                                    ///< s
+  double end = std::numeric_limits<double>::infinity();  ///< s
 };
 
 /// All sinks of a scene, as one effect: a particle that lies in several is counted by the first.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -76,7 +75,7 @@ std::uint64_t Flow::count(double time) const {
 Flow flow_of(const Emitter& emitter, double spacing, int flat_axis) {
   Flow flow;
   flow.start = emitter.start;
-  flow.end = emitter.end > 0.0 ? emitter.end : std::numeric_limits<double>::infinity();
+  flow.end = emitter.end;
   flow.particle_volume = spacing * spacing * spacing / static_cast<double>(emitter.particles_per_cell);
   const bool volume = emitter.type == Emitter::Type::kVolume;
   const double per_second = volume ? emitter.rate : emitter.speed * mouth_of(emitter, spacing, flat_axis).area;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,8 +25,8 @@ struct Emitter {
   Type type = Type::kDisc;
   std::int64_t particles_per_cell = 8;
   std::int64_t seed = 1;
-  double start = 0.0;               ///< s
-  double end = 0.0;                 ///< s; 0: never
+  double start = 0.0;                                    ///< s
+  double end = std::numeric_limits<double>::infinity();  ///< s
   double spread = 0.0;              ///< share of its speed that a particle has in a direction of its own
   std::int64_t most_particles = 0;  ///< 0: no limit
   double most_volume = 0.0;         ///< m^3; 0: no limit
@@ -46,7 +47,7 @@ struct Emitter {
 
 /// How an emitter's particles follow one another.
 struct Flow {
-  double start = 0.0, end = 0.0;  ///< s; end: infinity if never
+  double start = 0.0, end = 0.0;  ///< s
   double rate = 0.0;              ///< particles/s
   double particle_volume = 0.0;   ///< m^3
   std::uint64_t most = 0;         ///< particles

@@ -1,5 +1,6 @@
 // Repose: the visitor that writes the reference of scene keys: one Markdown section per object, in the order
 // of declaration, with one row per key. Sections of nested objects follow the object that holds them.
+#include <cmath>
 #include <vector>
 
 #include "engine/scene/reader.h"
@@ -44,7 +45,7 @@ class ReferenceFields final : public Fields {
   }
 
   void number(const char* key, double& value, const Quantity& quantity) override {
-    add(key, quantity, number_text(value), "");
+    add(key, quantity, std::isfinite(value) ? number_text(value) : "none", "");
   }
 
   void integer(const char* key, std::int64_t& value, const Quantity& quantity) override {

@@ -55,7 +55,9 @@ class SchemaFields final : public Fields {
   }
 
   void number(const char* key, double& value, const Quantity& quantity) override {
-    add(key, number_schema("number", quantity), with_unit(quantity), quantity.required, value);
+    // What stands for "none" is no number of JSON.
+    const Json::Value standard = std::isfinite(value) ? Json::Value(value) : Json::Value();
+    add(key, number_schema("number", quantity), with_unit(quantity), quantity.required, standard);
   }
 
   void integer(const char* key, std::int64_t& value, const Quantity& quantity) override {

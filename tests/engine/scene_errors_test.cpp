@@ -233,7 +233,7 @@ TEST(SceneErrors, EmittersAndSinks_SayWhatWouldBeRight) {
   EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "jel", )" + disc + "}")),
             "s.json:3:40: emitters[0].material: no material \"jel\"; choose among \"gel\", \"sand\"");
   EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", "start": 2, "end": 1, )" + disc + "}")),
-            "s.json:3:66: emitters[0].end: must be after \"start\", or 0");
+            "s.json:3:66: emitters[0].end: must come after \"start\"");
   EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", "normal": [0, 0, 0], )" + disc + "}")),
             "s.json:3:57: emitters[0].normal: must not be zero, for example [0, -1, 0]");
   EXPECT_EQ(errors(flowing(R"({"name": "a", "material": "gel", "speed": 1, "type": "volume",
