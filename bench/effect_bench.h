@@ -1,0 +1,46 @@
+// Repose: what each effect costs: one base scene, and each effect alone added to it, in time and in bytes per
+// particle.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace repose {
+
+/// An effect, asked for as a scene would.
+struct EffectTrial {
+  std::string effect;                  ///< its kName
+  std::string asked;                   ///< the key, for the table
+  std::vector<std::string> base;       ///< changes of the base scene that it is compared with
+  std::vector<std::string> overrides;  ///< further changes that turn it on
+};
+
+/// At least one for each effect of the list (engine/effect/effects.h); a test holds the two together.
+std::vector<EffectTrial> effect_trials();
+
+struct EffectBenchArguments {
+  std::string scene = REPOSE_SCENES "/probe_column.json";
+  std::vector<std::string> overrides;  ///< of the base scene
+  int steps = 10;                      ///< in a turn
+  int pairs = 7;                       ///< of turns, one with and one without
+  int threads = 1;
+  std::vector<std::string> only;  ///< effects; none: all
+};
+
+struct EffectCost {
+  EffectTrial trial;
+  double nanoseconds = 0.0;  ///< per particle and step, with the effect
+  double ratio = 1.0;        ///< median of the pairs: time with over time without
+  double low = 1.0, high = 1.0;
+  std::size_t bytes = 0;  ///< per particle, beyond the base scene
+};
+
+/// Errors: 65, 70 of the scenes; 64 for an effect that is not in the list.
+Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& arguments);
+
+/// The table of docs/effects.md.
+std::string to_markdown(const std::vector<EffectCost>& costs, const EffectBenchArguments& arguments);
+
+}  // namespace repose

@@ -1,0 +1,67 @@
+// Repose: the words of effect_bench, and how its table gets into a page.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "apps/repose/command.h"
+#include "bench/effect_bench.h"
+#include "engine/io/atomic_file.h"
+
+namespace repose {
+namespace {
+
+constexpr const char* kBegin = "<!-- effect_bench: begin -->\n";
+constexpr const char* kEnd = "<!-- effect_bench: end -->\n";
+
+/// Puts the table between its two marks in a page.
+Result<void> put_into(const std::string& path, const std::string& table) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{ErrorKind::kNoInput, "cannot be read", path};
+  std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin) {
+    return Error{ErrorKind::kBadScene,
+                 std::string("has no lines ") + kBegin + "and " + kEnd + "to put a table between", path};
+  }
+  page.replace(begin, end - begin, kBegin + table);
+  auto out = AtomicFile::create(path);
+  if (!out) return out.error();
+  if (auto written = out->write(page.data(), page.size()); !written) return written;
+  return out->commit();
+}
+
+int main(int count, char** words) {
+  EffectBenchArguments arguments;
+  std::string page;
+  CLI::App app{"What each effect costs a scene, in time and in bytes per particle", "effect_bench"};
+  app.add_option("--scene", arguments.scene, "the base scene (default: probe_column)");
+  app.add_option("--set", arguments.overrides, "change the base scene, such as grid.precision=double");
+  app.add_option("--only", arguments.only, "these effects")->delimiter(',');
+  app.add_option("--steps", arguments.steps, "steps in a turn (default 10)")->check(CLI::Range(1, 1000000));
+  app.add_option("--pairs", arguments.pairs, "pairs of turns (default 7)")->check(CLI::Range(1, 1000));
+  app.add_option("--threads", arguments.threads, "threads (default 1)")->check(CLI::Range(1, 1024));
+  app.add_option("--page", page, "put the table into this page, docs/effects.md");
+  try {
+    app.parse(count, words);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? 0 : static_cast<int>(ErrorKind::kUsage);
+  }
+  const auto costs = bench_effects(arguments);
+  if (!costs) return fail(costs.error());
+  const std::string table = to_markdown(*costs, arguments);
+  if (page.empty()) {
+    std::printf("%s", table.c_str());
+    return 0;
+  }
+  if (auto put = put_into(page, table); !put) return fail(put.error());
+  return 0;
+}
+
+}  // namespace
+}  // namespace repose
+
+int main(int count, char** words) {
+  return repose::main(count, words);
+}
