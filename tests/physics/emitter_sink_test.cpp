@@ -154,7 +154,7 @@ TEST(Emitter, ChannelsAndSpread_OfNewcomersAreInitialised) {
       simulate(scene_of(kColumn, {"volume_correction={}", kLoose, "emitters.spout.spread=0.2",
                                   R"json(materials.loose.moisture={"initial": 0.25})json"}));
   ASSERT_TRUE(run_frames(*simulation, 2));
-  const PointCloud points = simulation->points(true);
+  const PointCloud points = simulation->points({{OutputAttribute::kChannels}});
   std::map<std::string, std::vector<float>> channels;
   for (const PointAttribute& attribute : points.attributes) channels[attribute.name] = attribute.values;
   EXPECT_EQ(channels.count("volume_gained"), 1u);
