@@ -7,7 +7,7 @@ SCENES = [("hourglass", []), ("hourglass", ["--set", "grid.precision=double"]), 
 MOST_INSTRUCTIONS = 1.001  # times those of the bare build
 MOST_TIME = 1.03
 STEPS = 200  # timed, and hashed
-FEW, MORE = 4, 12  # counted steps; what setting up takes is in both and cancels
+FEW, MORE = 4, 24  # counted steps; what setting up takes is in both and cancels
 PAIRS = 9
 
 
