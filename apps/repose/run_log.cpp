@@ -160,6 +160,7 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   for (const Measurement& m : simulation.measurements()) {
     row["probes"][m.probe][m.quantity] = std::isfinite(m.value) ? Json::Value(m.value) : Json::Value();
   }
+  row["asleep"] = Json::UInt64(simulation.particles_asleep());
   row["blocks"] = Json::UInt64(simulation.memory().blocks);
   row["hash"] = hex(simulation.hash());
   return log_["frames"].append(row);

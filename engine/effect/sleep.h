@@ -10,10 +10,10 @@ struct Sleep : Effect {
   static constexpr const char* kName = "sleep";
 
   bool enabled = false;
-  double speed = 0.0;       ///< m/s; 0: a hundredth of sqrt(|g| dx)
+  double speed = 0.0;       ///< m/s; 0: a tenth of sqrt(|g| dx)
   double after = 0.1;       ///< s
   double wake_speed = 0.0;  ///< m/s; 0: twice `speed`
-  double path = 0.01;       ///< cells
+  double way = 0.01;        ///< cells
 
   void declare(Fields& fields);
   bool on() const { return enabled; }

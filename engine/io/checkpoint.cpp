@@ -170,7 +170,7 @@ template <class AnyRest, class Visit>
 Result<void> for_each_rest(AnyRest& rest, Visit visit) {
   if (auto done = visit("rest.asleep", rest.asleep.data(), rest.asleep.size()); !done) return done;
   if (auto done = visit("rest.calm", rest.calm.data(), rest.calm.size() * sizeof(double)); !done) return done;
-  return visit("rest.path", rest.path.data(), rest.path.size() * sizeof(double));
+  return visit("rest.way", rest.way.data(), rest.way.size() * sizeof(rest.way[0]));
 }
 
 Result<void> write_rest(AtomicFile& file, const RestField& rest) {

@@ -65,6 +65,14 @@ class SimulationOf final : public Simulation {
 
   const Counters& counters() const override { return state_.counters; }
   std::size_t particles() const override { return state_.particles(); }
+  std::size_t particles_asleep() const override {
+    std::size_t sum = 0;
+    for (std::size_t owner = 0; owner < state_.rest.asleep.size(); ++owner) {
+      if (state_.rest.asleep[owner] == 0) continue;
+      for (const auto& set : state_.sets) sum += set.begin[owner + 1] - set.begin[owner];
+    }
+    return sum;
+  }
   PointCloud points(const PointsWanted& wanted) const override {
     return make_points(scene_, state_, *stepper_.plan().kernels, wanted);
   }

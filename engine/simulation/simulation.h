@@ -58,6 +58,8 @@ class Simulation {
 
   virtual const Counters& counters() const = 0;
   virtual std::size_t particles() const = 0;
+  /// Of them, those in blocks that sleep.
+  virtual std::size_t particles_asleep() const = 0;
   /// All particles in the order of their ids, with what is wanted of them (engine/simulation/points.h).
   virtual PointCloud points(const PointsWanted& wanted = {}) const = 0;
   virtual Diagnostics diagnose() = 0;

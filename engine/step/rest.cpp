@@ -1,6 +1,7 @@
 #include "engine/step/rest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace repose {
@@ -18,6 +19,16 @@ std::uint32_t particles_of(const State<Real>& state, std::size_t owner) {
   std::uint32_t sum = 0;
   for (const auto& set : state.sets) sum += set.begin[owner + 1] - set.begin[owner];
   return sum;
+}
+
+/// Goes on; returns how far it is from where it began, m.
+double go(std::array<double, 3>& way, const std::array<double, 3>& velocity, double dt) {
+  double square = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    way[axis] += velocity[axis] * dt;
+    square += way[axis] * way[axis];
+  }
+  return std::sqrt(square);
 }
 
 }  // namespace
@@ -124,14 +135,14 @@ void Rest<Real>::list(const State<Real>& state) {
 }
 
 template <class Real>
-void Rest<Real>::wake_margin(State<Real>& state, double dt, std::span<const double> speeds) {
+void Rest<Real>::wake_margin(State<Real>& state, double dt, std::span<const Stir> stirs) {
   RestField& rest = state.rest;
-  for (std::size_t k = 0; k < speeds.size(); ++k) {
+  for (std::size_t k = 0; k < stirs.size(); ++k) {
     const auto owner = static_cast<std::size_t>(attendance_.margin[k]);
     if (rest.asleep[owner] == 0) continue;  // woken by an earlier try of this step
-    rest.path[owner] += speeds[k] * dt;
+    const double way = go(rest.way[owner], stirs[k].velocity, dt);
     // Not a number wakes too: inspection will say whose it is.
-    if (speeds[k] <= rule_.wake_speed && rest.path[owner] <= rule_.path) continue;
+    if (stirs[k].speed <= rule_.wake_speed && way <= rule_.way) continue;
     rest.wake(owner);
     attendance_.awake.push_back(attendance_.margin[k]);
     listed_ = false;
@@ -139,14 +150,17 @@ void Rest<Real>::wake_margin(State<Real>& state, double dt, std::span<const doub
 }
 
 template <class Real>
-void Rest<Real>::settle(State<Real>& state, double dt, const std::function<double(std::size_t owner)>& speed) {
+void Rest<Real>::settle(State<Real>& state, double dt, std::span<const Stir> stirs) {
   RestField& rest = state.rest;
   for (const std::int32_t k : attendance_.awake) {
     const auto owner = static_cast<std::size_t>(k);
-    rest.calm[owner] = speed(owner) < rule_.speed ? rest.calm[owner] + dt : 0.0;
+    const double way = go(rest.way[owner], stirs[owner].velocity, dt);
+    rest.calm[owner] += dt;
+    if (stirs[owner].speed >= rule_.speed) rest.begin_anew(owner);
     if (rest.calm[owner] < rule_.after) continue;
+    rest.begin_anew(owner);
+    if (way > rule_.way) continue;
     rest.asleep[owner] = 1;
-    rest.path[owner] = 0.0;
     listed_ = false;
   }
 }
@@ -157,7 +171,7 @@ std::size_t Rest<Real>::bytes() const {
       attendance_.awake.capacity() + attendance_.margin.capacity() + attendance_.blocks.capacity();
   for (const auto& list : attendance_.scatter) sum += list.capacity();
   return sum * sizeof(std::int32_t) + distance_.capacity() + reached_.capacity() +
-         old_blocks_.capacity() * (sizeof(Index3) + sizeof(std::uint32_t) + 17);
+         old_blocks_.capacity() * (sizeof(Index3) + sizeof(std::uint32_t) + 33);
 }
 
 template class Rest<float>;

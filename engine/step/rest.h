@@ -4,9 +4,13 @@
 // nodes, and wake, before anything is gathered, when those nodes move: the step in which an owner wakes already
 // moves it, so the momentum that woke it is not lost.
 //
-// The error: what falls asleep still moved, slower than `speed`; and a sleeping block stands like a rock under
-// loads whose nodes move slower than `wake_speed` and not farther than `path` in all. The scene gives all
-// three.
+// Sand at rest still rings: elastic waves run to and fro in it for long. So calm is not to be without speed,
+// but to go nowhere: a block sleeps when its particles have been slower than `speed` for a time, and have gone
+// less than `way` in all in that time.
+//
+// The error: what falls asleep might have crept by `way` in every such time; and a sleeping block stands like a
+// rock under loads that move its nodes slower than `wake_speed` and less than `way` in all. The scene gives all
+// of these.
 #pragma once
 
 #include <array>
@@ -22,10 +26,16 @@ namespace repose {
 
 /// When blocks fall asleep and wake.
 struct RestRule {
-  double speed = 0.0;       ///< m/s; a block whose particles are all slower is calm
+  double speed = 0.0;       ///< m/s; a block with a faster particle is not calm
   double after = 0.0;       ///< s that it must be calm before it sleeps
   double wake_speed = 0.0;  ///< m/s of a node that a sleeping block's particles touch, which wakes it
-  double path = 0.0;        ///< m, that such a node may move in all
+  double way = 0.0;         ///< m, that a calm block may go in `after`, and the nodes of a sleeping one in all
+};
+
+/// How an owner moves, or the nodes that its particles touch.
+struct Stir {
+  double speed = 0.0;                       ///< m/s, of the fastest
+  std::array<double, 3> velocity{0, 0, 0};  ///< m/s, mean
 };
 
 /// What acts on sleeping blocks from outside, such as a solid that moves: whether it reaches the block between
@@ -72,12 +82,12 @@ class Rest {
   void forget() { listed_ = false; }
   const Attendance& attendance() const { return attendance_; }
 
-  /// Once the nodes have moved: wakes those of the margin whose nodes were too fast. `speeds` are those of the
-  /// fastest nodes that the particles of each owner of the margin touch, m/s. They join those awake.
-  void wake_margin(State<Real>& state, double dt, std::span<const double> speeds);
+  /// Once the nodes have moved: wakes those of the margin whose nodes moved too much; one Stir for each of the
+  /// margin. They join those awake.
+  void wake_margin(State<Real>& state, double dt, std::span<const Stir> stirs);
 
-  /// At the end of a step. `speed(owner)` is that of its fastest particle, m/s.
-  void settle(State<Real>& state, double dt, const std::function<double(std::size_t owner)>& speed);
+  /// At the end of a step; one Stir per owner, read where it is awake.
+  void settle(State<Real>& state, double dt, std::span<const Stir> stirs);
 
   std::size_t bytes() const;
 

@@ -249,30 +249,39 @@ void Stepper<Real>::update_nodes(State<Real>& state, Real dt) {
 template <class Real>
 void Stepper<Real>::wake(State<Real>& state, Real dt) {
   const auto& margin = rest_->attendance().margin;
-  margin_speeds_.resize(margin.size());
+  margin_stirs_.resize(margin.size());
   threads_.for_each(margin.size(), [&](std::size_t i) {
-    margin_speeds_[i] = fastest_node(state, static_cast<std::size_t>(margin[i]));
+    margin_stirs_[i] = stir_of_nodes(state, static_cast<std::size_t>(margin[i]));
   });
-  rest_->wake_margin(state, static_cast<double>(dt), margin_speeds_);
+  rest_->wake_margin(state, static_cast<double>(dt), margin_stirs_);
 }
 
-/// Of the nodes in the rows that the particles of an owner touch, m/s.
+/// Of the nodes with mass in the rows that the particles of an owner touch.
 template <class Real>
-double Stepper<Real>::fastest_node(const State<Real>& state, std::size_t owner) {
+Stir Stepper<Real>::stir_of_nodes(const State<Real>& state, std::size_t owner) {
   Scratch<Real>& mine = scratch();
   load_arenas(state, owner, mine);
   constexpr std::size_t kRowValues = kArenaSide * kNodeValues;
-  double most = 0.0;
+  double most = 0.0, nodes = 0.0;
+  Stir stir;
   for (std::uint64_t rows = state.rows_touched[owner]; rows != 0; rows &= rows - 1) {
     const Real* const row = mine.arena.data() + static_cast<std::size_t>(std::countr_zero(rows)) * kRowValues;
     for (std::size_t node = 0; node < kArenaSide; ++node) {
-      const Real* const v = row + node * kNodeValues + 1;
-      const double square =
-          double(v[0]) * double(v[0]) + double(v[1]) * double(v[1]) + double(v[2]) * double(v[2]);
+      const Real* const at = row + node * kNodeValues;
+      if (!(at[0] > Real(0))) continue;
+      double square = 0.0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto v = static_cast<double>(at[1 + axis]);
+        stir.velocity[axis] += v;
+        square += v * v;
+      }
       if (!(square <= most)) most = square;
+      nodes += 1.0;
     }
   }
-  return std::sqrt(most);
+  stir.speed = std::sqrt(most);
+  for (double& v : stir.velocity) v /= std::max(nodes, 1.0);
+  return stir;
 }
 
 /// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside
@@ -310,20 +319,42 @@ template <class Real>
 void Stepper<Real>::gather(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kGather);
   motion_.assign(state.grid.owners().size(), {});
+  if (rest_) stirs_.resize(state.grid.owners().size());
   for_each_awake(state, [&](std::size_t owner) { motion_[owner] = gather_block(state, owner, dt); });
 }
+
+namespace {
+
+/// Adds up the velocities of every eighth particle: enough for a mean.
+template <class Real>
+void sample(const Chunk<Real>& chunk, std::array<double, 3>& sums, double& samples) {
+  for (std::size_t p = 0; p < chunk.particles.count; p += 8) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sums[axis] += static_cast<double>(chunk.particles.velocity[axis][p]);
+    samples += 1.0;
+  }
+}
+
+}  // namespace
 
 template <class Real>
 Motion<Real> Stepper<Real>::gather_block(State<Real>& state, std::size_t owner, Real dt) {
   const bool two_velocities = load_arenas(state, owner, scratch());
   Motion<Real> motion;
+  std::array<double, 3> sums{};
+  double samples = 0.0;
   const std::size_t next = std::min(owner + 1, state.grid.owners().size() - 1);
   for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
     chunk.two_velocities = two_velocities;
     chunk.motion = motion;
     for (const auto& pass : plan_.gather[k]) pass.run(chunk);
     motion = chunk.motion;
+    if (rest_) sample(chunk, sums, samples);
   });
+  if (rest_) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      stirs_[owner].velocity[axis] = sums[axis] / std::max(samples, 1.0);
+  }
   return motion;
 }
 
@@ -350,9 +381,11 @@ void Stepper<Real>::finish(State<Real>& state, Real dt) {
   counters.runs_wasted += std::max<std::int64_t>(0, runs - counters.runs_when_ordered);
   if (!plan_.events.empty()) counters.unseen_motion += counters.max_speed * static_cast<double>(dt);
   if (rest_) {
-    rest_->settle(state, static_cast<double>(dt), [this](std::size_t owner) {
-      return std::sqrt(static_cast<double>(motion_[owner].speed_squared));
-    });
+    for (const std::int32_t owner : rest_->attendance().awake) {
+      const auto k = static_cast<std::size_t>(owner);
+      stirs_[k].speed = std::sqrt(static_cast<double>(motion_[k].speed_squared));
+    }
+    rest_->settle(state, static_cast<double>(dt), stirs_);
   }
   ++counters.step;
 }

@@ -77,7 +77,7 @@ class Stepper {
   template <class Visit>
   void for_each_awake(const State<Real>& state, Visit visit);
   void wake(State<Real>& state, Real dt);
-  double fastest_node(const State<Real>& state, std::size_t owner);
+  Stir stir_of_nodes(const State<Real>& state, std::size_t owner);
   void clear_nodes(State<Real>& state);
   bool bounded(const State<Real>& state, std::size_t owner, Real dt) const;
   void gather(State<Real>& state, Real dt);
@@ -94,8 +94,8 @@ class Stepper {
   StepPlan<Real> plan_;
   Threads threads_;
   BlockOrder<Real> order_;
-  std::optional<Rest<Real>> rest_;  // where blocks may sleep
-  std::vector<double> margin_speeds_;
+  std::optional<Rest<Real>> rest_;          // where blocks may sleep
+  std::vector<Stir> stirs_, margin_stirs_;  // per owner; per owner of the margin
   std::vector<Scratch<Real>> scratch_;
   std::vector<VelocityBounds<Real>> bounds_;    // per block
   std::vector<Motion<Real>> motion_;            // per owner
