@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing: those to build and run, and with --tests those that the tests read
-# files with. Does nothing where everything is there.
+# Installs the Debian packages that are missing: those to build and run, with --tests those that the tests read
+# files with, and with --all those of the long tests too. Does nothing where everything is there.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config ccache libopenvdb-dev libboost-iostreams-dev libeigen3-dev libtbb-dev
           libhwy-dev libjsoncpp-dev libcli11-dev libmuparser-dev libpng-dev zlib1g-dev ffmpeg)
-if [ "${1:-}" = "--tests" ]; then
+if [ "${1:-}" = "--tests" ] || [ "${1:-}" = "--all" ]; then
   packages+=(libgtest-dev libgmock-dev libbenchmark-dev libopenvdb-tools python3 python3-meshio python3-vtk9)
 fi
+[ "${1:-}" = "--all" ] && packages+=(valgrind)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -16,7 +16,9 @@ for word in "$@"; do
   esac
 done
 
-bash cmake/packages.sh --tests
+packages=--tests
+$all && packages=--all
+bash cmake/packages.sh $packages
 preset=${REPOSE_PRESET:-release}
 jobs=$(nproc)
 cmake --preset "$preset" -DREPOSE_TESTS=ON -DREPOSE_BENCHMARKS=ON >"/tmp/repose-configure-$$.log" 2>&1 || { cat "/tmp/repose-configure-$$.log"; exit 1; }

@@ -74,7 +74,7 @@ void print_forecast(const Scene& scene, const Simulation& simulation, double pro
   std::printf("  particles           %zu", simulation.particles());
   if (emitted > 0.0) {
     std::printf(" at the start, %.0f%s at the end", particles + emitted,
-                scene.effect<Sinks>().on() ? " less what sinks remove" : "");
+                outlets(scene).empty() ? "" : " less what sinks remove");
   }
   std::printf("\n");
   std::printf("  bytes per particle  %zu\n", bytes_per_particle(scene));

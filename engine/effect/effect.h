@@ -3,6 +3,7 @@
 // elsewhere; everything else about an effect stands in its own pair of files.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -37,6 +38,18 @@ struct SetDescription {
 struct Channel {
   std::string name;
   double initial = 0.0;
+};
+
+/// The one channel that is known by name beyond its effect, for densities of points: log volume that a particle
+/// has gained beside its strain.
+inline constexpr const char* kVolumeGained = "volume_gained";
+
+/// A set of particles that is empty when the scene begins, and filled during the run.
+struct Inlet {
+  std::string name;      ///< of the set; no body may have it
+  std::string key;       ///< of the scene, under which it stands
+  std::string material;  ///< its name in the scene
+  std::int64_t particles_per_cell = 8;
 };
 
 /// The scene around an effect, while it makes itself ready.
@@ -84,18 +97,34 @@ struct Assembly {
   std::function<void(Newcomers<Real>&)> initialize;
   /// Made by an effect that measures what solids do, and filled by them; null where none does.
   std::shared_ptr<ContactLog> contact_log = nullptr;
+  /// Where the inlets and the outlets of the effect at hand begin in State::ledger.
+  std::size_t first_inlet = 0, first_outlet = 0;
+
+  /// The set that inlet k of the effect at hand fills: inlets follow the bodies.
+  std::size_t set_of_inlet(std::size_t k) const {
+    return state.sets.size() - state.ledger.emitted.size() + first_inlet + k;
+  }
 };
 
 /// The hooks that an effect may fill, each with the default of adding nothing. An effect further has
 ///   static constexpr const char* kName      for `plan`, run.json and tests
 ///   bool on() const; std::string why() const
 struct Effect {
+  /// The names of the scene's materials, before its keys are read.
+  void know_materials(const std::vector<std::string>&) {}
   /// Its keys: of the scene, and of a material that yields.
   void declare(Fields&) {}
   void declare_in_sand(Fields&, const std::string& /*material*/) {}
 
   /// Builds shapes, reads files; once, before anything below, and only where the effect is on.
   Result<void> prepare(const Surroundings&) { return {}; }
+
+  /// What particles begin from during the run, and how many will have begun by a time (s) on cells of a size
+  /// (m); in plane strain flat_axis >= 0.
+  std::vector<Inlet> inlets() const { return {}; }
+  double particles_by(double /*time*/, double /*spacing*/, int /*flat_axis*/) const { return 0.0; }
+  /// The names of what removes particles.
+  std::vector<std::string> outlets() const { return {}; }
 
   std::vector<Channel> channels(const SetDescription&) const { return {}; }
   /// Whether particles of the set yield by numbers of their own, which passes before the return map have put

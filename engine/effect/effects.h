@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <tuple>
 
-#include "engine/effect/cohesion.h"
 #include "engine/effect/collider.h"
+#include "engine/effect/gravity.h"
+
+#ifdef REPOSE_BARE  // what a build without the others does, they must not change
+namespace repose {
+using Effects = std::tuple<Gravity, Colliders>;
+}  // namespace repose
+#else
+#include "engine/effect/cohesion.h"
 #include "engine/effect/dilatancy.h"
 #include "engine/effect/emitter.h"
 #include "engine/effect/force_field.h"
-#include "engine/effect/gravity.h"
 #include "engine/effect/hardening.h"
 #include "engine/effect/moisture.h"
 #include "engine/effect/pin.h"
@@ -23,7 +29,6 @@
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
-
 using Effects = std::tuple<Emitters,          // particles that begin
                            Sinks,             // and end
                            Gravity,           // v += dt g
@@ -40,6 +45,10 @@ using Effects = std::tuple<Emitters,          // particles that begin
                            Variation,         // cone *, cohesion *
                            Dilatancy,         // dilatancy, and what it opens
                            RateFriction>;     // cone +, by the trial strain: last of the cone
+}  // namespace repose
+#endif
+
+namespace repose {
 
 /// Calls visit(effect) for each effect of the list, in order.
 template <class List, class Visit>

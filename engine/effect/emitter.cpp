@@ -122,7 +122,7 @@ Result<double> share_of_bounds(const Shape& shape, int flat_axis) {
 template <class Real>
 struct Working {
   Stream stream;
-  std::size_t emitter, set;
+  std::size_t inlet, set;  ///< its places in the ledger and in the state
   SetDescription description;
   double patience;  ///< s that a particle may wait
 };
@@ -145,7 +145,7 @@ class EmitterRuntime {
     const double now = state.counters.time;
     return std::any_of(working_.begin(), working_.end(), [&](const Working<Real>& working) {
       const Flow& flow = working.stream.flow();
-      const std::uint64_t made = state.ledger.emitted[working.emitter];
+      const std::uint64_t made = state.ledger.emitted[working.inlet];
       if (flow.count(now) <= made) return false;
       return moment == Moment::kEndOfFrame || now - flow.crossing(made) >= working.patience;
     });
@@ -154,7 +154,7 @@ class EmitterRuntime {
   /// All that has crossed by now, of all emitters: the order event has to be paid for anyway.
   void run(State<Real>& state, ParticleEdit<Real>& edit) const {
     for (const Working<Real>& working : working_) {
-      std::uint64_t& made = state.ledger.emitted[working.emitter];
+      std::uint64_t& made = state.ledger.emitted[working.inlet];
       const std::uint64_t all = working.stream.flow().count(state.counters.time);
       if (all > made) emit(working, made, all, state, edit);
       made = std::max(made, all);
@@ -218,6 +218,20 @@ void Emitters::declare(Fields& fields) {
   });
 }
 
+std::vector<Inlet> Emitters::inlets() const {
+  std::vector<Inlet> inlets;
+  for (const Emitter& e : list) inlets.push_back({e.name, "emitters", e.material, e.particles_per_cell});
+  return inlets;
+}
+
+double Emitters::particles_by(double time, double spacing, int flat_axis) const {
+  double particles = 0.0;
+  for (const Emitter& emitter : list) {
+    particles += static_cast<double>(flow_of(emitter, spacing, flat_axis).count(time));
+  }
+  return particles;
+}
+
 Result<void> Emitters::prepare(const Surroundings& surroundings) {
   shapes_.clear();
   for (const Emitter& emitter : list) {
@@ -249,10 +263,10 @@ void Emitters::add_to_nodes(Assembly<Real>& assembly) const {
   const Surroundings& around = assembly.surroundings;
   std::vector<Working<Real>> working;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    const std::size_t set = assembly.state.sets.size() - list.size() + e;
+    const std::size_t set = assembly.set_of_inlet(e);
     Stream stream(list[e], shapes_[e], around.spacing, around.flat_axis);
     const double patience = patience_of(list[e], stream.flow(), around);
-    working.push_back({std::move(stream), e, set, assembly.sets[set], patience});
+    working.push_back({std::move(stream), assembly.first_inlet + e, set, assembly.sets[set], patience});
   }
   const auto runtime = std::make_shared<EmitterRuntime<Real>>(std::move(working), assembly);
   assembly.plan.events.push_back(

@@ -13,18 +13,22 @@
 
 namespace repose {
 
-/// All emitters of a scene, as one effect. Their sets are the last of the state, in the order of the list.
+/// All emitters of a scene, as one effect. Each is an inlet, in the order of the list.
 struct Emitters : Effect {
   static constexpr const char* kName = "emitter";
 
   std::vector<Emitter> list;
   std::vector<std::string> materials;  ///< names that the reader accepts
 
+  void know_materials(const std::vector<std::string>& names) { materials = names; }
   void declare(Fields& fields);
   bool on() const { return !list.empty(); }
   std::string why() const {
     return list.empty() ? "no entry in 'emitters'" : std::to_string(list.size()) + " in 'emitters'";
   }
+
+  std::vector<Inlet> inlets() const;
+  double particles_by(double time, double spacing, int flat_axis) const;
 
   /// Errors: 65, 66, naming the emitter.
   Result<void> prepare(const Surroundings& surroundings);

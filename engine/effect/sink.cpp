@@ -31,7 +31,8 @@ struct BuiltSink {
 template <class Real>
 class SinkRuntime {
  public:
-  SinkRuntime(std::vector<BuiltSink> sinks, int flat_axis) : sinks_(std::move(sinks)), flat_axis_(flat_axis) {}
+  SinkRuntime(std::vector<BuiltSink> sinks, std::size_t first_outlet, int flat_axis)
+      : sinks_(std::move(sinks)), first_outlet_(first_outlet), flat_axis_(flat_axis) {}
 
   bool due(const State<Real>& state, Moment moment) const {
     const bool look = moment == Moment::kEndOfFrame || state.counters.unseen_motion >= state.spacing;
@@ -56,6 +57,7 @@ class SinkRuntime {
   }
 
   std::vector<BuiltSink> sinks_;
+  std::size_t first_outlet_;  // where they begin in the ledger
   int flat_axis_;
 };
 
@@ -94,7 +96,7 @@ void SinkRuntime<Real>::run(State<Real>& state, ParticleEdit<Real>& edit) const 
     for (std::size_t k = 0; k < found.size(); ++k) {
       for (const Found& particle : found[k]) {
         edit.sets[k].removed.push_back(particle.place);
-        ++state.ledger.removed[particle.sink * state.sets.size() + k];
+        ++state.ledger.removed[(first_outlet_ + particle.sink) * state.sets.size() + k];
       }
     }
   }
@@ -113,6 +115,12 @@ void Sinks::declare(Fields& fields) {
   });
 }
 
+std::vector<std::string> Sinks::outlets() const {
+  std::vector<std::string> names;
+  for (const Sink& sink : list) names.push_back(sink.name);
+  return names;
+}
+
 Result<void> Sinks::prepare(const Surroundings& surroundings) {
   shapes_.clear();
   for (const Sink& sink : list) {
@@ -129,7 +137,8 @@ void Sinks::add_to_nodes(Assembly<Real>& assembly) const {
   for (std::size_t s = 0; s < list.size(); ++s) {
     sinks.push_back({shapes_[s], list[s].outside, list[s].start, list[s].end});
   }
-  const auto runtime = std::make_shared<SinkRuntime<Real>>(std::move(sinks), assembly.surroundings.flat_axis);
+  const auto runtime = std::make_shared<SinkRuntime<Real>>(std::move(sinks), assembly.first_outlet,
+                                                           assembly.surroundings.flat_axis);
   assembly.plan.events.push_back(
       {{"sinks", "sinks", {"position"}, {"particles"}},
        [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },

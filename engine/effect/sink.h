@@ -34,6 +34,8 @@ struct Sinks : Effect {
     return list.empty() ? "no entry in 'sinks'" : std::to_string(list.size()) + " in 'sinks'";
   }
 
+  std::vector<std::string> outlets() const;
+
   /// Errors: 65, 66, naming the sink.
   Result<void> prepare(const Surroundings& surroundings);
 

@@ -12,7 +12,7 @@ namespace repose {
 struct VolumeCorrection : Effect {
   static constexpr const char* kName = "volume_correction";
   /// The channel that remembers: log volume gained per particle.
-  static constexpr const char* kGained = "volume_gained";
+  static constexpr const char* kGained = kVolumeGained;
 
   bool enabled = false;  ///< set by the presence of the scene key
 

@@ -109,13 +109,13 @@ std::string bytes_text(double bytes) {
   return text;
 }
 
-/// Refuses, before anything is allocated, bodies that would not fit, or what emitters will have made by the
-/// scene's last frame. Sinks make room, nobody knows how much: where there are some, emitted particles count
-/// only as ids.
+/// Refuses, before anything is allocated, bodies that would not fit, or what inlets will have made by the
+/// scene's last frame. Outlets make room, nobody knows how much: where there are some, particles of inlets
+/// count only as ids.
 Result<void> check_memory(const Scene& scene, double seeded, double limit) {
   const auto per_particle = static_cast<double>(bytes_per_particle(scene));
   const double emitted = emitted_by(scene, last_frame_time(scene)), particles = seeded + emitted;
-  const double held = seeded + (scene.effect<Sinks>().on() ? 0.0 : emitted);
+  const double held = seeded + (outlets(scene).empty() ? emitted : 0.0);
   // Seeds take 24 bytes while they last; sets that grow take an eighth more than they need.
   const double bytes =
       std::max(seeded * (per_particle + 24), held > seeded ? 1.125 * held * per_particle : 0.0);
@@ -181,22 +181,22 @@ ParticleSet<Real> empty_set(Compilation<Real>& compilation, const std::string& n
   return set;
 }
 
-/// The sets that emitters will fill, and what is counted of them.
+/// The sets that inlets will fill, and what is counted of them and of outlets.
 template <class Real>
-void add_emitters(Compilation<Real>& compilation, State<Real>& state) {
+void open_ledger(Compilation<Real>& compilation, State<Real>& state) {
   const Scene& scene = compilation.scene;
   state.ledger.initial = state.ledger.next_id = state.particles();
-  for (const Emitter& emitter : scene.effect<Emitters>().list) {
-    ParticleSet<Real> set = empty_set(compilation, emitter.name, emitter.material);
-    const Flow flow = flow_of(emitter, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
-    set.particle_volume = flow.particle_volume;
-    set.particle_mass = flow.particle_volume * material_of(scene, set.material).elasticity().density;
+  const double dx = scene.grid.spacing;
+  for (const Inlet& inlet : inlets(scene)) {
+    ParticleSet<Real> set = empty_set(compilation, inlet.name, inlet.material);
+    set.particle_volume = dx * dx * dx / static_cast<double>(inlet.particles_per_cell);
+    set.particle_mass = set.particle_volume * material_of(scene, set.material).elasticity().density;
     state.sets.push_back(std::move(set));
     state.ledger.emitted.push_back(0);
   }
-  const std::size_t sinks = scene.effect<Sinks>().list.size();
-  state.ledger.removed.assign(sinks * state.sets.size(), 0);
-  if (sinks > 0) state.counters.unseen_motion = scene.grid.spacing;  // they look before the first step
+  const std::size_t removing = outlets(scene).size();
+  state.ledger.removed.assign(removing * state.sets.size(), 0);
+  if (removing > 0) state.counters.unseen_motion = dx;  // they look before the first step
 }
 
 template <class Real>
@@ -247,7 +247,7 @@ Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
     state.counters.max_gradient = std::max(state.counters.max_gradient, spin);
     state.sets.push_back(std::move(set));
   }
-  add_emitters(compilation, state);
+  open_ledger(compilation, state);
   cells.resize(state.sets.size());
   place_in_blocks(state, std::move(cells), transfer_choice(scene).ownership());
   return {};
@@ -307,6 +307,8 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
   }
   for_each_effect(compilation.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
     if (effect.on()) effect.add_to_nodes(assembly);
+    assembly.first_inlet += effect.inlets().size();
+    assembly.first_outlet += effect.outlets().size();
   });
 
   // Nodes to particles.
@@ -398,7 +400,7 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
       channels = std::max(channels, effect.channels(set).size());
     };
     for (const BodyDescription& body : scene.bodies) count(body.name, body.material);
-    for (const Emitter& emitter : scene.effect<Emitters>().list) count(emitter.name, emitter.material);
+    for (const Inlet& inlet : inlets(scene)) count(inlet.name, inlet.material);
     list.push_back({effect.kName, effect.on(), effect.why(), channels * real});
   });
   return list;
@@ -410,10 +412,9 @@ double last_frame_time(const Scene& scene) {
 
 double emitted_by(const Scene& scene, double time) {
   double particles = 0.0;
-  for (const Emitter& emitter : scene.effect<Emitters>().list) {
-    const Flow flow = flow_of(emitter, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
-    particles += static_cast<double>(flow.count(time));
-  }
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    particles += effect.particles_by(time, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
+  });
   return particles;
 }
 

@@ -47,7 +47,7 @@ std::vector<EffectStatus> effect_status(const Scene& scene);
 
 /// When the scene's last frame ends, s.
 double last_frame_time(const Scene& scene);
-/// How many particles emitters will have made by a time (s).
+/// How many particles inlets will have made by a time (s).
 double emitted_by(const Scene& scene, double time);
 
 /// Bytes per particle of all channels and of what ordering keeps beside them.

@@ -239,6 +239,13 @@ bool is_named(const std::vector<Named>& list, const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const Named& entry) { return entry.name == name; });
 }
 
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+  std::vector<std::string> names;
+  for (const Named& entry : list) names.push_back(entry.name);
+  return names;
+}
+
 void describe_materials(Fields& fields, Scene& scene) {
   fields.dictionary("materials", true, "the materials, by name", [&](const std::string& name, Fields& f) {
     MaterialDescription material;
@@ -254,8 +261,7 @@ void describe_bodies(Fields& fields, Scene& scene) {
     describe_body(f, body);
     f.check(!is_named(scene.bodies, body.name), "name",
             "\"" + body.name + "\" is taken by another body; choose another");
-    std::vector<std::string> materials;
-    for (const MaterialDescription& material : scene.materials) materials.push_back(material.name);
+    const std::vector<std::string> materials = names_of(scene.materials);
     f.check(materials.empty() || is_named(scene.materials, body.material), "material",
             "no material \"" + body.material + "\"; " + did_you_mean(body.material, materials));
     if (scene.grid.plane_strain) {
@@ -308,16 +314,17 @@ void describe(Fields& fields, Scene& scene) {
   describe_materials(fields, scene);
   describe_bodies(fields, scene);
   turn_gravity(scene);
-  for (const MaterialDescription& material : scene.materials) {
-    scene.effect<Emitters>().materials.push_back(material.name);
-  }
-  for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields); });
-  for (const Emitter& emitter : scene.effect<Emitters>().list) {
+  const std::vector<std::string> materials = names_of(scene.materials);
+  for_each_effect(scene.effects, [&](auto& effect) {
+    effect.know_materials(materials);
+    effect.declare(fields);
+  });
+  for (const Inlet& inlet : inlets(scene)) {
     fields.check(
-        !is_named(scene.bodies, emitter.name), "emitters",
-        "\"" + emitter.name + "\" is the name of a body; choose another, for both are sets of particles");
+        !is_named(scene.bodies, inlet.name), inlet.key.c_str(),
+        "\"" + inlet.name + "\" is the name of a body; choose another, for both are sets of particles");
   }
-  fields.check(!scene.bodies.empty() || !scene.effect<Emitters>().list.empty(), "bodies",
+  fields.check(!scene.bodies.empty() || !inlets(scene).empty(), "bodies",
                "must hold at least one object, unless there is one in \"emitters\"");
   fields.check(
       !scene.grid.plane_strain || scene.effect<Gravity>().acceleration[*scene.grid.plane_strain] == 0.0,
@@ -331,6 +338,22 @@ void describe(Fields& fields, Scene& scene) {
                 [&](Fields& f) { describe_output(f, scene.output, scene.grid.spacing); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",
                 [&](Fields& f) { describe_camera(f, scene.camera); });
+}
+
+std::vector<Inlet> inlets(const Scene& scene) {
+  std::vector<Inlet> all;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    for (Inlet& inlet : effect.inlets()) all.push_back(std::move(inlet));
+  });
+  return all;
+}
+
+std::vector<std::string> outlets(const Scene& scene) {
+  std::vector<std::string> all;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    for (std::string& name : effect.outlets()) all.push_back(std::move(name));
+  });
+  return all;
 }
 
 }  // namespace repose

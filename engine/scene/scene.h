@@ -155,4 +155,8 @@ struct Scene {
 
 void describe(Fields& fields, Scene& scene);
 
+/// The sets that effects will fill, and the names of what removes particles, each in the order of the ledger.
+std::vector<Inlet> inlets(const Scene& scene);
+std::vector<std::string> outlets(const Scene& scene);
+
 }  // namespace repose

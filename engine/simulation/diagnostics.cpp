@@ -116,15 +116,15 @@ LedgerReport ledger_report(const Scene& scene, const State<Real>& state) {
     entry.particles += particles;
     entry.mass += static_cast<double>(particles) * state.sets[set].particle_mass;
   };
-  const std::vector<Emitter>& emitters = scene.effect<Emitters>().list;
-  for (std::size_t e = 0; e < emitters.size(); ++e) {
-    const std::size_t set = sets - emitters.size() + e;
-    add(report.emitters.emplace_back(LedgerReport::Entry{emitters[e].name}), set, state.ledger.emitted[e]);
-    add(report.emitted, set, state.ledger.emitted[e]);
+  const std::vector<std::uint64_t>& emitted = state.ledger.emitted;
+  for (std::size_t e = 0; e < emitted.size(); ++e) {
+    const std::size_t set = sets - emitted.size() + e;
+    add(report.emitters.emplace_back(LedgerReport::Entry{state.sets[set].name}), set, emitted[e]);
+    add(report.emitted, set, emitted[e]);
   }
-  const std::vector<Sink>& sinks = scene.effect<Sinks>().list;
-  for (std::size_t s = 0; s < sinks.size(); ++s) {
-    LedgerReport::Entry& sink = report.sinks.emplace_back(LedgerReport::Entry{sinks[s].name});
+  const std::vector<std::string> names = outlets(scene);
+  for (std::size_t s = 0; s < names.size(); ++s) {
+    LedgerReport::Entry& sink = report.sinks.emplace_back(LedgerReport::Entry{names[s]});
     for (std::size_t k = 0; k < sets; ++k) {
       add(sink, k, state.ledger.removed[s * sets + k]);
       add(report.removed, k, state.ledger.removed[s * sets + k]);

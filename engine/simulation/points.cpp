@@ -101,7 +101,7 @@ void put_elastic_strain(const Source<Real>& source, std::vector<float>& values) 
 template <class Real>
 void put_density(const Source<Real>& source, std::vector<float>& values) {
   const double rest = source.material.elasticity().density;
-  const std::size_t channel = source.set.extra_index(VolumeCorrection::kGained);
+  const std::size_t channel = source.set.extra_index(kVolumeGained);
   const Real* gained = channel < source.set.extra.size() ? source.set.extra[channel].values.data() : nullptr;
   for (std::size_t p = 0; p < source.set.count; ++p) {
     const double growth = trace_of(source.set, p) + (gained != nullptr ? double(gained[p]) : 0.0);

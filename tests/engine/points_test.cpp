@@ -37,7 +37,7 @@ State<Real> state_of(const std::vector<std::vector<std::uint32_t>>& ids) {
     set.material = static_cast<int>(k);
     set.particle_mass = 1.0 + static_cast<double>(k);
     set.particle_volume = 0.01;
-    if (k == 1) set.extra.push_back({VolumeCorrection::kGained, {}});
+    if (k == 1) set.extra.push_back({kVolumeGained, {}});
     set.allocate(ids[k].size());
     auto& set_cells = cells.emplace_back();
     for (std::size_t p = 0; p < ids[k].size(); ++p) {

@@ -1,0 +1,118 @@
+// Repose tests: what holds for every effect that is asked for, so a new one has these tests by its line in
+// effect_trials(): it comes on, alone, and keeps the same bits over threads, instruction sets and checkpoints.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <ostream>
+#include <set>
+
+#include "bench/effect_bench.h"
+#include "tests/physics/physics_probe.h"
+
+namespace repose {
+
+void PrintTo(const EffectTrial& trial, std::ostream* out) {
+  *out << trial.asked;
+}
+
+namespace {
+
+/// Time enough for an emitter to emit.
+constexpr int kSteps = 40;
+
+class EffectTrials : public testing::TestWithParam<EffectTrial> {
+ protected:
+  /// 16384 particles in the middle of the bench's scene.
+  static Scene scene(const std::vector<std::string>& base, const std::vector<std::string>& more) {
+    std::vector<std::string> overrides{R"(bodies.column.shape.lower=["= 56 * dx", "= 5 * dx", "= 56 * dx"])",
+                                       R"(bodies.column.shape.upper=["= 72 * dx", "= 13 * dx", "= 72 * dx"])"};
+    overrides.insert(overrides.end(), base.begin(), base.end());
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return scene_file("probe_column.json", overrides);
+  }
+  static Scene without() { return scene(GetParam().base, {}); }
+  static Scene with() { return scene(GetParam().base, GetParam().overrides); }
+
+  static std::uint64_t hash_after(int threads, Target target = best_target()) {
+    const auto simulation = simulate(with(), threads, target);
+    EXPECT_TRUE(run_steps(*simulation, kSteps));
+    return simulation->hash();
+  }
+
+  // Without this the library would never start more threads than the machine has cores.
+  tbb::global_control control_{tbb::global_control::max_allowed_parallelism, 2};
+};
+
+std::map<std::string, EffectStatus> by_name(const Scene& scene) {
+  std::map<std::string, EffectStatus> all;
+  for (EffectStatus& status : effect_status(scene)) all[status.name] = status;
+  return all;
+}
+
+/// What a simulation is made of, and where it starts.
+std::string made_of(const Scene& scene) {
+  const auto simulation = simulate(scene, 1);
+  std::string text = std::to_string(simulation->hash());
+  for (const auto& [where, pass] : simulation->passes()) text += "; " + pass.name;
+  const auto compiled = compile_scene<float>(scene, {});
+  EXPECT_TRUE(compiled);
+  if (compiled->plan.rest) text += "; rest";
+  return text;
+}
+
+TEST(EffectTrialList, CoversEveryEffectAndNamesNoOther) {
+  std::set<std::string> tried, listed;
+  for (const EffectTrial& trial : effect_trials()) tried.insert(trial.effect);
+  const Effects effects;
+  for_each_effect(effects, [&](const auto& effect) { listed.insert(effect.kName); });
+  EXPECT_EQ(tried, listed);
+}
+
+TEST_P(EffectTrials, TurnItOnAndNothingElse) {
+  auto before = by_name(without());
+  for (const auto& [name, after] : by_name(with())) {
+    EXPECT_NE(after.reason, "") << name;
+    if (name == GetParam().effect) {
+      EXPECT_TRUE(after.on);
+      continue;
+    }
+    EXPECT_EQ(after.on, before[name].on) << name;
+    EXPECT_EQ(after.bytes_per_particle, before[name].bytes_per_particle) << name;
+  }
+  EXPECT_NE(made_of(with()), made_of(without())) << "asked for, but nothing came of it";
+}
+
+TEST_P(EffectTrials, ThreadsAndInstructionSets_SameBits) {
+  const std::uint64_t one = hash_after(1);
+  EXPECT_EQ(hash_after(2), one);
+  if (!target_supported(Target::kAvx2)) return;
+  EXPECT_EQ(hash_after(2, Target::kAvx2), one) << "AVX2";
+}
+
+TEST_P(EffectTrials, SavedAndLoaded_GoesOnWithTheSameBits) {
+  const std::string path =
+      std::filesystem::temp_directory_path().string() + "/repose_trial_" + std::to_string(getpid());
+  const auto saved = simulate(with(), 1);
+  ASSERT_TRUE(run_steps(*saved, kSteps / 2));
+  const Result<void> save = saved->save(path);
+  ASSERT_TRUE(save) << save.error().text();
+  const auto loaded = simulate(with(), 2);
+  const Result<void> load = loaded->load(path);
+  std::filesystem::remove_all(path);
+  ASSERT_TRUE(load) << load.error().text();
+  ASSERT_TRUE(run_steps(*loaded, kSteps - kSteps / 2));
+  EXPECT_EQ(loaded->hash(), hash_after(1));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EffectTrials, testing::ValuesIn(effect_trials()), [](const auto& parameter) {
+  std::string name = std::to_string(parameter.index) + "_";
+  for (const char c : parameter.param.asked) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return name;
+});
+
+}  // namespace
+}  // namespace repose
