@@ -52,8 +52,8 @@ TEST(Cohesion, VerticalCut_HoldsBelowItsCriticalHeightAndFallsAbove) {
   const double low = fall(0.75), high = fall(1.15);
   report("move_at_0.75", low, "m");
   report("move_at_1.15", high, "m");
-  EXPECT_LT(low, 0.02);
-  EXPECT_GT(high, 0.15);
+  EXPECT_LT(low, 0.005);
+  EXPECT_GT(high, 0.05);
 }
 
 TEST(Cohesion, VerticalCutWithoutTension_HoldsHalfAndFallsAtFourFifths) {
@@ -61,18 +61,19 @@ TEST(Cohesion, VerticalCutWithoutTension_HoldsHalfAndFallsAtFourFifths) {
   const double low = fall(0.5, none), high = fall(0.8, none);
   report("move_at_0.5", low, "m");
   report("move_at_0.8", high, "m");
-  EXPECT_LT(low, 0.02);
+  EXPECT_LT(low, 0.005);
   EXPECT_GT(high, 0.15);
 }
 
-/// A layer that flows down a rough plane, periodic along it.
+/// A layer that flows down a rough plane, periodic along it. With fewer particles per cell the noise of their
+/// pressure makes it faster: by 8 % with 16, by 17 % with 8.
 constexpr const char* kLayer = R"json({"repose": 1, "name": "layer",
   "parameters": {"theta": 26, "dx": 0.01, "d": 0.05},
   "grid": {"spacing": "= dx", "plane_strain": "z", "periodic": {"x": {"length": "= 8 * dx"}}},
   "materials": {"sand": {"type": "drucker_prager", "density": 1500, "youngs_modulus": 1e6, "poisson_ratio": 0.3,
     "friction_angle": 20.9, "cone_matching": "plane_strain",
     "rate_friction": {"rise": 0.26, "threshold": 0.279, "grain_diameter": "= d", "grain_density": 2500}}},
-  "bodies": [{"name": "layer", "material": "sand",
+  "bodies": [{"name": "layer", "material": "sand", "particles_per_cell": 25,
               "shape": {"type": "box", "lower": [0, 0, -1], "upper": ["= 8 * dx", "= 20 * dx", 1]}}],
   "gravity": {"acceleration": ["= 9.81 * sin(theta * deg)", "= -9.81 * cos(theta * deg)", 0], "ramp": 0.1},
   "colliders": [{"name": "plane", "contact": "sticky", "shape": {"type": "plane"}}]})json";
@@ -138,8 +139,29 @@ TEST(Prestress, Bed_BeginsAtRest) {
   report("speed_without", bare.speed, "m/s");
   report("speed_with", ready.speed, "m/s");
   EXPECT_GT(bare.speed, 0.1) << "the jolt that the effect is there for";
-  EXPECT_LT(ready.speed, 0.2 * bare.speed);
+  EXPECT_LT(ready.speed, 0.4 * bare.speed) << "what is left is the unevenness of random places";
   EXPECT_LT(std::abs(ready.sunk), 0.1 * std::abs(bare.sunk));
+}
+
+/// Particles per cell of 5 mm, of cells with sand all around them.
+double density_inside(const PointCloud& points) {
+  constexpr int kAround = 3;
+  std::map<std::pair<int, int>, double> cells;
+  const auto cell = [](double x) { return static_cast<int>(std::floor(x / 0.005)); };
+  for (const auto& x : points.position) ++cells[{cell(x[0]), cell(x[1])}];
+  double sum = 0.0, count = 0.0;
+  for (const auto& [at, particles] : cells) {
+    bool inside = true;
+    for (int i = -kAround; i <= kAround; ++i) {
+      for (int j = -kAround; j <= kAround; ++j)
+        inside = inside && cells.contains({at.first + i, at.second + j});
+    }
+    if (!inside) continue;
+    sum += particles;
+    ++count;
+  }
+  EXPECT_GT(count, 50.0);
+  return sum / count;
 }
 
 /// An hourglass in the plane, twice turned over by turning gravity. How much more room the sand takes inside
@@ -156,22 +178,9 @@ double bulking(const std::vector<std::string>& overrides) {
     "force_fields": [
       {"name": "first", "type": "uniform", "acceleration": [0, 19.62, 0], "start": 1.2, "end": 2.4}]})json",
                                             overrides));
+  const double seeded = density_inside(simulation->points());
   EXPECT_TRUE(run_until(*simulation, 3.6));
-  const PointCloud points = simulation->points();
-  std::map<std::pair<int, int>, double> cells;
-  const auto cell = [](double x) { return static_cast<int>(std::floor(x / 0.005)); };
-  for (const auto& x : points.position) ++cells[{cell(x[0]), cell(x[1])}];
-  double sum = 0.0, count = 0.0;
-  for (const auto& [at, particles] : cells) {
-    bool inside = true;
-    for (int n = 0; n < 25; ++n)
-      inside = inside && cells.contains({at.first + n / 5 - 2, at.second + n % 5 - 2});
-    if (!inside) continue;
-    sum += particles;
-    ++count;
-  }
-  EXPECT_GT(count, 100.0);
-  return 9.0 * count / sum;
+  return seeded / density_inside(simulation->points());
 }
 
 TEST(VolumeCorrection, TurnedHourglass_GainsNoVolume) {

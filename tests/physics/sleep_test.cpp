@@ -92,12 +92,12 @@ TEST(Sleep, BedThatNeverWakes_WouldBeTold) {
 
 TEST(Sleep, MovingSolid_WakesWhatItReaches) {
   const std::string plate = R"(, {"name": "plate",
-    "shape": {"type": "box", "lower": [0.3, 0.06, 0.1], "upper": [0.38, 0.6, 0.5]},
-    "motion": {"keys": [{"time": 0.8}, {"time": 1.0, "translation": [0.1, 0, 0]}]}})";
+    "shape": {"type": "box", "lower": [0.28, 0.26, 0.1], "upper": [0.36, 0.8, 0.5]},
+    "motion": {"keys": [{"time": 0.8}, {"time": 1.0, "translation": [0, -0.15, 0]}]}})";
   const auto simulation = simulate(bed({"sleep={}"}, "", plate));
   ASSERT_TRUE(run_until(*simulation, 0.79));
   EXPECT_GT(asleep(*simulation), 0.95);
-  ASSERT_TRUE(run_until(*simulation, 0.9));
+  ASSERT_TRUE(run_until(*simulation, 0.95));
   EXPECT_LT(asleep(*simulation), 0.9);
   EXPECT_LT(simulation->diagnose().deepest, 0.02) << "no particle is left in the plate's way";
 }
