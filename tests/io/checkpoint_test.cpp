@@ -27,6 +27,7 @@ State<Real> make_state(bool filled) {
   State<Real> state;
   state.spacing = 0.1;
   state.tallies.assign(3, 0.0);
+  state.rest.on = true;
   const std::vector<Index3> owners{{0, 0, 0}, {1, 0, 0}, {-3, 7, 2}, {250000, -250000, 1}, {0, 0, 1}};
   if (filled) state.grid.build(owners, state.topology);
   for (int k = 0; k < 2; ++k) {
@@ -48,6 +49,10 @@ State<Real> make_state(bool filled) {
   }
   if (filled) {
     state.tallies = {0.25, -7.0, 1e300};
+    state.rest.resize(owners.size());
+    state.rest.asleep[2] = 1;
+    state.rest.calm[3] = 0.25;
+    state.rest.way[2] = {1e-3, -2e-5, 0.5};
     state.counters = {3, 271, 0.0123, 0.1373, 1e-4, 2.5, 17.0, 2, 991, 5, 8, 0.01};
   }
   return state;
@@ -112,6 +117,9 @@ TYPED_TEST(Checkpoint, SavedAndLoaded_IsTheSameBitForBit) {
   ASSERT_TRUE(result) << result.error().text();
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(loaded.sets[k].begin, saved.sets[k].begin);
+    EXPECT_EQ(loaded.rest.asleep, saved.rest.asleep);
+    EXPECT_EQ(loaded.rest.calm, saved.rest.calm);
+    EXPECT_EQ(loaded.rest.way, saved.rest.way);
     std::vector<const TypeParam*> before;
     saved.sets[k].for_each_real([&](const auto& channel) { before.push_back(channel.data()); });
     std::size_t c = 0;
@@ -204,6 +212,8 @@ TYPED_TEST(Checkpoint, WhereParticlesBeginAndEnd_OtherCountsAndTheLedgerComeBack
   saved.ledger = {kParticles, 991, {17, 24}, {1, 2, 3, 4}};
   this->save(saved);
   State<TypeParam> fresh;  // as compiled: an empty set, and a longer one
+  fresh.tallies.assign(3, 0.0);
+  fresh.rest.on = true;
   fresh.sets.resize(2);
   for (const char* name : {"gained", "age"}) fresh.sets[1].extra.push_back({name, {}});
   fresh.sets[1].allocate(3 * kParticles);
