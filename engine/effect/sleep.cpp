@@ -16,11 +16,13 @@ void Sleep::declare(Fields& fields) {
                  {.unit = "s", .meaning = "how long it must be calm before it sleeps", .low = 0.0});
         f.number("wake_speed", wake_speed,
                  {.unit = "m/s", .meaning = "a node this fast wakes it; 0: twice \"speed\"", .low = 0.0});
-        f.number("way", way,
-                 {.unit = "cells",
-                  .meaning = "what a calm block may go in \"after\", and the nodes of a sleeping one in all",
-                  .low = 0.0,
-                  .low_open = true});
+        f.number(
+            "way", way,
+            {.unit = "cells",
+             .meaning =
+                 "what a calm block may go in \"after\"; the nodes of a sleeping one, five times that in all",
+             .low = 0.0,
+             .low_open = true});
         f.check(wake_speed == 0.0 || speed == 0.0 || wake_speed >= speed, "wake_speed",
                 "must be at least \"speed\", or blocks would wake as soon as they sleep");
       });

@@ -9,6 +9,10 @@ namespace {
 
 constexpr std::uint8_t kFar = 3;
 
+/// A sleeping block's nodes may go this many times the way that let it fall asleep: else neighbours that are
+/// about to sleep keep one another awake.
+constexpr double kPatience = 5.0;
+
 template <class Real>
 Index3 block_of(const State<Real>& state, std::size_t owner) {
   return state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
@@ -142,7 +146,7 @@ void Rest<Real>::wake_margin(State<Real>& state, double dt, std::span<const Stir
     if (rest.asleep[owner] == 0) continue;  // woken by an earlier try of this step
     const double way = go(rest.way[owner], stirs[k].velocity, dt);
     // Not a number wakes too: inspection will say whose it is.
-    if (stirs[k].speed <= rule_.wake_speed && way <= rule_.way) continue;
+    if (stirs[k].speed <= rule_.wake_speed && way <= kPatience * rule_.way) continue;
     rest.wake(owner);
     attendance_.awake.push_back(attendance_.margin[k]);
     listed_ = false;
