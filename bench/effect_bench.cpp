@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "engine/scene/figures.h"
 #include "engine/scene/reader.h"
 #include "engine/simulation/simulation.h"
 

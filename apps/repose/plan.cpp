@@ -4,6 +4,7 @@
 
 #include "apps/repose/command.h"
 #include "apps/repose/measure.h"
+#include "engine/scene/figures.h"
 #include "engine/step/time_step.h"
 
 namespace repose {

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "engine/io/atomic_file.h"
+#include "engine/scene/figures.h"
 
 namespace repose {
 namespace {

@@ -36,21 +36,4 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
 /// The solids of a scene, for reports and pictures.
 Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_paths);
 
-/// An effect that scenes can call for, and whether this one does.
-struct EffectStatus {
-  std::string name;
-  bool on = false;
-  std::string reason;  ///< the key that asked for it, or what would
-  std::size_t bytes_per_particle = 0;
-};
-std::vector<EffectStatus> effect_status(const Scene& scene);
-
-/// When the scene's last frame ends, s.
-double last_frame_time(const Scene& scene);
-/// How many particles inlets will have made by a time (s).
-double emitted_by(const Scene& scene, double time);
-
-/// Bytes per particle of all channels and of what ordering keeps beside them.
-std::size_t bytes_per_particle(const Scene& scene);
-
 }  // namespace repose

@@ -46,7 +46,8 @@ struct GridDescription {
 struct TimeDescription {
   std::int64_t frames = 48;
   double frames_per_second = 24.0;
-  std::vector<std::vector<double>> scale;  ///< slow motion: rows (film time in s, scene seconds per film second)
+  std::vector<std::vector<double>>
+      scale;              ///< slow motion: rows (film time in s, scene seconds per film second)
   double max_step = 1.0;  ///< s; an upper bound beside the limits below
   double cfl = 0.6;       ///< cells that matter may cross in a step
   double sound = 0.5;     ///< cells that a compression wave may cross in a step

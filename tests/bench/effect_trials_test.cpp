@@ -11,6 +11,7 @@
 #include <set>
 
 #include "bench/effect_bench.h"
+#include "engine/scene/figures.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {

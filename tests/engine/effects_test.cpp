@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "engine/scene/compiler.h"
+#include "engine/scene/figures.h"
 #include "engine/scene/reader.h"
 
 namespace repose {

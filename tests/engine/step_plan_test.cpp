@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/scene/compiler.h"
+#include "engine/scene/figures.h"
 #include "engine/scene/reader.h"
 
 namespace repose {

@@ -1,0 +1,47 @@
+// Repose: what the files of the scene compiler share: a scene in the course of becoming a state and a plan.
+// Nothing outside this folder includes it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/compiler.h"
+#include "engine/scene/figures.h"
+
+namespace repose {
+
+inline TransferChoice transfer_choice(const Scene& scene) {
+  return {scene.grid.stencil, scene.grid.transfer, scene.grid.kept_velocity, scene.grid.kept_stretching};
+}
+
+inline int material_index(const Scene& scene, const std::string& name) {
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    if (scene.materials[k].name == name) return static_cast<int>(k);
+  }
+  return -1;
+}
+
+inline const MaterialDescription& material_of(const Scene& scene, int index) {
+  return scene.materials[static_cast<std::size_t>(index)];
+}
+
+inline SetDescription set_description(const Scene& scene, const std::string& name, int material) {
+  return {name, material_of(scene, material).name, material_of(scene, material).parameters};
+}
+
+/// What the passes of one scene are made from.
+template <class Real>
+struct Compilation {
+  const Scene& scene;
+  const CompileOptions& options;
+  Surroundings surroundings;
+  Effects effects;  ///< ready: with their shapes and files
+  std::vector<SetDescription> sets;
+};
+
+/// Seeds the bodies, and makes the empty sets of inlets; in blocks, with the ledger open and the first speeds
+/// known. Errors: 65, 66, 78 as compile_scene.
+template <class Real>
+Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state);
+
+}  // namespace repose

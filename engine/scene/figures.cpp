@@ -1,0 +1,47 @@
+#include "engine/scene/figures.h"
+
+#include <algorithm>
+
+#include "engine/scene/compilation.h"
+
+namespace repose {
+
+std::vector<EffectStatus> effect_status(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  std::vector<EffectStatus> list;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    std::size_t channels = 0;  // of the set that has most
+    const auto count = [&](const std::string& name, const std::string& material) {
+      const SetDescription set = set_description(scene, name, material_index(scene, material));
+      channels = std::max(channels, effect.channels(set).size());
+    };
+    for (const BodyDescription& body : scene.bodies) count(body.name, body.material);
+    for (const Inlet& inlet : inlets(scene)) count(inlet.name, inlet.material);
+    list.push_back({effect.kName, effect.on(), effect.why(), channels * real});
+  });
+  return list;
+}
+
+double last_frame_time(const Scene& scene) {
+  return clock_of(scene.time).at(scene.time.frames);
+}
+
+double emitted_by(const Scene& scene, double time) {
+  double particles = 0.0;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    particles += effect.particles_by(time, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
+  });
+  return particles;
+}
+
+std::size_t bytes_per_particle(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  const int affine = transfer_choice(scene).keeps_affine() ? kAffineComponents : 0;
+  std::size_t bytes =
+      real * static_cast<std::size_t>(3 + 3 + affine + kStrainComponents) + sizeof(std::uint32_t);
+  bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
+  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
+  return bytes;
+}
+
+}  // namespace repose
