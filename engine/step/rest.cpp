@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace repose {
 namespace {
@@ -23,6 +22,14 @@ std::uint32_t particles_of(const State<Real>& state, std::size_t owner) {
   std::uint32_t sum = 0;
   for (const auto& set : state.sets) sum += set.begin[owner + 1] - set.begin[owner];
   return sum;
+}
+
+/// Calls visit(block) for a block and its 26 neighbours.
+template <class Visit>
+void for_each_around(const Index3& block, Visit visit) {
+  for (int n = 0; n < kNeighbours; ++n) {
+    visit(Index3{block[0] + n / 9 - 1, block[1] + n / 3 % 3 - 1, block[2] + n % 3 - 1});
+  }
 }
 
 /// Goes on; returns how far it is from where it began, m.
@@ -49,29 +56,52 @@ void Rest<Real>::before_order(const State<Real>& state) {
   old_ = state.rest;
 }
 
+/// `wakes(block, old owners)`: whether an owner at the block wakes that sleeps and has another number of
+/// particles.
 template <class Real>
-void Rest<Real>::after_order(State<Real>& state) {
+template <class Wakes>
+void Rest<Real>::carry_over(State<Real>& state, Wakes wakes) {
   listed_ = false;
   RestField& rest = state.rest;
   rest.resize(state.grid.owners().size());
   if (old_.asleep.size() != old_blocks_.size()) return;  // before the first step: all are awake
-  std::map<Index3, std::size_t> gone;
-  for (std::size_t k = 0; k < old_blocks_.size(); ++k) gone.emplace(old_blocks_[k], k);
+  OldOwners old;
+  for (std::size_t k = 0; k < old_blocks_.size(); ++k) old.emplace(old_blocks_[k], k);
+  std::vector<std::uint8_t> stays(old_blocks_.size(), 0);
   for (std::size_t owner = 0; owner < rest.asleep.size(); ++owner) {
-    const auto found = gone.find(block_of(state, owner));
-    if (found == gone.end()) continue;
+    const Index3 block = block_of(state, owner);
+    const auto found = old.find(block);
+    if (found == old.end()) continue;
+    stays[found->second] = 1;
     rest.take(owner, old_, found->second);
-    if (old_counts_[found->second] != particles_of(state, owner) && rest.asleep[owner] != 0) rest.wake(owner);
-    gone.erase(found);
+    if (rest.asleep[owner] == 0 || old_counts_[found->second] == particles_of(state, owner)) continue;
+    if (wakes(block, old)) rest.wake(owner);
   }
-  for (const auto& [block, k] : gone) {
-    for (int n = 0; n < kNeighbours; ++n) {
-      const Index3 next{block[0] + n / 9 - 1, block[1] + n / 3 % 3 - 1, block[2] + n % 3 - 1};
+  for (const auto& [block, k] : old) {
+    if (stays[k] != 0) continue;
+    for_each_around(block, [&](const Index3& next) {
       const std::int32_t owner = state.grid.find_owner(state.topology.wrap(next));
       if (owner >= 0 && rest.asleep[static_cast<std::size_t>(owner)] != 0)
         rest.wake(static_cast<std::size_t>(owner));
-    }
+    });
   }
+}
+
+template <class Real>
+void Rest<Real>::after_order(State<Real>& state) {
+  carry_over(state, [&](const Index3& block, const OldOwners& old) {
+    bool beside_awake = false;
+    for_each_around(block, [&](const Index3& next) {
+      const auto found = old.find(state.topology.wrap(next));
+      beside_awake = beside_awake || (found != old.end() && old_.asleep[found->second] == 0);
+    });
+    return beside_awake;
+  });
+}
+
+template <class Real>
+void Rest<Real>::after_edit(State<Real>& state) {
+  carry_over(state, [](const Index3&, const OldOwners&) { return true; });
 }
 
 template <class Real>

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -71,10 +72,13 @@ class Rest {
  public:
   explicit Rest(const RestRule& rule) : rule_(rule) {}
 
-  /// Around whatever gives particles other places or owners: an owner keeps its rest by its block. One that
-  /// sleeps and has gained or lost particles wakes, and so do the neighbours of one that is gone.
+  /// Around whatever gives particles other places or owners: an owner keeps its rest by its block, and the
+  /// neighbours of one that is gone wake. One that sleeps wakes when an edit changes the number of its
+  /// particles, or when an order does so beside one that is awake: among sleepers a particle only finds the
+  /// block that it had drifted into before they slept.
   void before_order(const State<Real>& state);
   void after_order(State<Real>& state);
+  void after_edit(State<Real>& state);
 
   /// Wakes what disturbances reach before `to` (s), and lists who takes part.
   const Attendance& attend(State<Real>& state, const std::vector<Disturbance<Real>>& disturbances, double to);
@@ -92,6 +96,10 @@ class Rest {
   std::size_t bytes() const;
 
  private:
+  using OldOwners = std::map<Index3, std::size_t>;  // by block
+
+  template <class Wakes>
+  void carry_over(State<Real>& state, Wakes wakes);
   void list(const State<Real>& state);
 
   RestRule rule_;

@@ -1,19 +1,14 @@
-// Repose: one step from beginning to end; whether it may be made is in acceptance.cpp.
+// Repose: one step from beginning to end; whether it may be made is in acceptance.cpp, what happens
+// between steps in between_steps.cpp, and how sleepers wake in waking.cpp.
 #include "engine/step/stepper.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "engine/step/transfer_stages.h"
 
 namespace repose {
 namespace {
-
-/// What a run beyond the fewest costs a step (scatter and gather), against what ordering costs a particle, in
-/// nanoseconds as measured on one core with AVX-512. Constants, so that the choice is the same everywhere.
-constexpr std::int64_t kCostOfRun = 14;
-constexpr std::int64_t kCostOfOrder = 30;
 
 constexpr int kMostHalvings = 3;
 
@@ -26,63 +21,6 @@ template <class Real>
 Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
     : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {
   if (plan_.rest) rest_.emplace(*plan_.rest);
-}
-
-template <class Real>
-void Stepper<Real>::order_if_due(State<Real>& state) {
-  const Counters& counters = state.counters;
-  const auto particles = static_cast<std::int64_t>(state.particles());
-  const bool wasteful = counters.runs_wasted * kCostOfRun > particles * kCostOfOrder;
-  if (counters.order_due == 0 && !wasteful) return;
-  const PhaseTimer timer(profile_, Phase::kOrder);
-  if (rest_) rest_->before_order(state);
-  const bool new_blocks = order_.order(state, threads_, plan_.transfer.ownership());
-  if (rest_) rest_->after_order(state);
-  if (topology_known_ && !new_blocks) return;
-  for (const auto& pass : plan_.order) pass.run(state);
-  topology_known_ = true;
-}
-
-template <class Real>
-void Stepper<Real>::follow(State<Real>& state) {
-  for (const auto& pass : plan_.order) pass.run(state);
-  if (rest_) rest_->forget();
-}
-
-/// Returns whether particles have begun or ended.
-template <class Real>
-Result<bool> Stepper<Real>::carry_out_events(State<Real>& state, Moment moment) {
-  if (plan_.events.empty()) return false;
-  const PhaseTimer timer(profile_, Phase::kOrder);
-  std::optional<ParticleEdit<Real>> edit;
-  for (const auto& pass : plan_.events) {
-    if (!pass.due(state, moment)) continue;
-    if (!edit) edit.emplace(state, threads_);
-    pass.run(state, *edit);
-  }
-  if (!edit || edit->empty()) return false;
-  if (rest_) rest_->before_order(state);
-  const auto new_blocks = apply_edit(std::move(*edit), state, plan_.transfer.ownership());
-  if (!new_blocks) return new_blocks.error();
-  if (rest_) rest_->after_order(state);
-  if (*new_blocks) topology_known_ = false;
-  return true;
-}
-
-template <class Real>
-Result<void> Stepper<Real>::end_frame(State<Real>& state) {
-  const CleanFloatingPoint clean;
-  const auto changed = carry_out_events(state, Moment::kEndOfFrame);
-  if (!changed) return changed.error();
-  if (*changed) order_if_due(state);
-  return {};
-}
-
-template <class Real>
-void Stepper<Real>::begin_frame(State<Real>& state) {
-  plan_.for_each_measure(state.tallies.data(), [&](const MeasurePass<Real>& measure, double* tallies) {
-    if (measure.begin_frame) measure.begin_frame(state, tallies);
-  });
 }
 
 template <class Real>
@@ -243,45 +181,6 @@ void Stepper<Real>::update_nodes(State<Real>& state, Real dt) {
     for (const auto& pass : plan_.nodes) pass.run(nodes);
     plan_.kernels->bound(nodes.nodes, bounds_[block]);
   });
-}
-
-/// Owners of the margin wake by what their nodes do in this very step.
-template <class Real>
-void Stepper<Real>::wake(State<Real>& state, Real dt) {
-  const auto& margin = rest_->attendance().margin;
-  margin_stirs_.resize(margin.size());
-  threads_.for_each(margin.size(), [&](std::size_t i) {
-    margin_stirs_[i] = stir_of_nodes(state, static_cast<std::size_t>(margin[i]));
-  });
-  rest_->wake_margin(state, static_cast<double>(dt), margin_stirs_);
-}
-
-/// Of the nodes with mass in the rows that the particles of an owner touch.
-template <class Real>
-Stir Stepper<Real>::stir_of_nodes(const State<Real>& state, std::size_t owner) {
-  Scratch<Real>& mine = scratch();
-  load_arenas(state, owner, mine);
-  constexpr std::size_t kRowValues = kArenaSide * kNodeValues;
-  double most = 0.0, nodes = 0.0;
-  Stir stir;
-  for (std::uint64_t rows = state.rows_touched[owner]; rows != 0; rows &= rows - 1) {
-    const Real* const row = mine.arena.data() + static_cast<std::size_t>(std::countr_zero(rows)) * kRowValues;
-    for (std::size_t node = 0; node < kArenaSide; ++node) {
-      const Real* const at = row + node * kNodeValues;
-      if (!(at[0] > Real(0))) continue;
-      double square = 0.0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto v = static_cast<double>(at[1 + axis]);
-        stir.velocity[axis] += v;
-        square += v * v;
-      }
-      if (!(square <= most)) most = square;
-      nodes += 1.0;
-    }
-  }
-  stir.speed = std::sqrt(most);
-  for (double& v : stir.velocity) v /= std::max(nodes, 1.0);
-  return stir;
 }
 
 /// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside

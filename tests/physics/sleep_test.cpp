@@ -90,6 +90,18 @@ TEST(Sleep, BedThatNeverWakes_WouldBeTold) {
   EXPECT_LT(with, 0.5 * without);
 }
 
+/// What moves elsewhere brings all particles into a new order now and then; who sleeps must not feel it.
+TEST(Sleep, BallThatFallsFarAway_LeavesTheBedAsleep) {
+  const auto simulation = simulate(bed({"sleep={}", "bodies.ball.shape.center=[0.32, 40, 0.32]"}, kBall));
+  const std::size_t sand = simulate(bed({}))->particles();
+  ASSERT_TRUE(run_until(*simulation, 0.8));
+  const std::int64_t orders = simulation->counters().orders;
+  EXPECT_EQ(simulation->particles_asleep(), sand);
+  ASSERT_TRUE(run_until(*simulation, 1.0));
+  EXPECT_GT(simulation->counters().orders, orders) << "the control: there were such events";
+  EXPECT_EQ(simulation->particles_asleep(), sand);
+}
+
 TEST(Sleep, MovingSolid_WakesWhatItReaches) {
   const std::string plate = R"(, {"name": "plate",
     "shape": {"type": "box", "lower": [0.28, 0.26, 0.1], "upper": [0.36, 0.8, 0.5]},
