@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "engine/effect/effects.h"
 #include "engine/scene/figures.h"
 #include "engine/scene/reader.h"
 #include "engine/simulation/simulation.h"
@@ -73,61 +74,15 @@ Result<EffectCost> measure(const EffectBenchArguments& arguments, const EffectTr
   return cost;
 }
 
-std::string in_sand(const std::string& key, const std::string& value) {
-  return "materials.sand." + key + "=" + value;
-}
-
 }  // namespace
 
 std::vector<EffectTrial> effect_trials() {
-  const std::string far = R"("shape": {"type": "box", "lower": [9, 9, 9], "upper": [10, 10, 10]})";
-  const std::string half = R"("shape": {"type": "box", "lower": [-9, -9, -9], "upper": [0.5, 9, 9]})";
-  const std::string wall =
-      R"([{"name": "floor", "friction": 0.5, "shape": {"type": "plane", "point": [0, 0.0390625, 0]}},
-    {"name": "plate", "shape": {"type": "box", "lower": [0.2, 0.05, 0.2], "upper": [0.3, 0.3, 0.8]})";
-  const std::string still = R"(gravity.acceleration=[0, 0, 0])";
-  return {
-      {"gravity", "gravity", {still}, {"gravity.acceleration=[0, -9.81, 0]"}},
-      {"collider", "colliders", {"colliders=[]"}, {"colliders=" + wall + "}]"}},
-      {"collider",
-       "colliders: motion",
-       {"colliders=" + wall + "}]"},
-       {"colliders=" + wall +
-        R"(, "motion": {"keys": [{"time": 0}, {"time": 1, "translation": [0.1, 0, 0]}]}}])"}},
-      {"emitter",
-       "emitters",
-       {},
-       {R"(emitters=[{"name": "spout", "material": "sand", "type": "disc", "center": [0.5, 1.5, 0.5],
-          "normal": [0, -1, 0], "radius": 0.05, "speed": 1}])"}},
-      {"sink", "sinks", {}, {R"(sinks=[{"name": "drain", )" + far + "}]"}},
-      {"force_field",
-       "force_fields",
-       {},
-       {R"(force_fields=[{"name": "wind", "type": "wind", "velocity": [1, 0, 0], )" + half + "}]"}},
-      {"pin",
-       "pins",
-       {},
-       {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.1, 1]}}])"}},
-      {"probe", "probes: force", {}, {R"(probes=[{"name": "weight", "type": "force", "collider": "floor"}])"}},
-      {"probe",
-       "probes: flow",
-       {},
-       {R"(probes=[{"name": "gate", "type": "flow", "point": [0, 0.3, 0], "normal": [0, 1, 0]}])"}},
-      {"sleep", "sleep (awake)", {}, {"sleep={}"}},
-      {"prestress", "prestress", {}, {R"(prestress=[{"body": "column"}])"}},
-      {"volume_correction", "volume_correction", {}, {"volume_correction={}"}},
-      {"hardening", "hardening", {}, {in_sand("hardening", "{}")}},
-      {"cohesion", "cohesion", {}, {in_sand("cohesion", "{}")}},
-      {"cohesion", "cohesion: tension", {}, {in_sand("cohesion", R"({"tension": {"limit": 100}})")}},
-      {"moisture", "moisture", {}, {in_sand("moisture", R"({"cohesion_change": 500, "initial": 0.5})")}},
-      {"moisture",
-       "moisture, wetting",
-       {},
-       {in_sand("moisture", R"({"cohesion_change": 500})"), R"(wetting=[{"name": "rain", )" + half + "}]"}},
-      {"variation", "variation", {}, {in_sand("variation", R"({"friction": 0.2})")}},
-      {"dilatancy", "dilatancy", {}, {in_sand("dilatancy", "{}")}},
-      {"rate_friction", "rate_friction", {}, {in_sand("rate_friction", "{}")}},
-  };
+  std::vector<EffectTrial> trials;
+  const Effects effects;
+  for_each_effect(effects, [&](const auto& effect) {
+    for (const Example& example : effect.examples()) trials.push_back({example, effect.kName});
+  });
+  return trials;
 }
 
 Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& arguments) {
@@ -150,6 +105,38 @@ Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& argume
     costs.push_back(std::move(*cost));
   }
   return costs;
+}
+
+std::string to_cost_table(const std::vector<EffectCost>& costs) {
+  std::vector<double> bare;
+  std::vector<std::pair<std::string, double>> dearest;
+  for (const EffectCost& cost : costs) {
+    const double without = cost.nanoseconds / cost.ratio, more = std::max(0.0, cost.nanoseconds - without);
+    bare.push_back(without);
+    if (dearest.empty() || dearest.back().first != cost.trial.effect)
+      dearest.emplace_back(cost.trial.effect, 0.0);
+    dearest.back().second = std::max(dearest.back().second, more);
+  }
+  dearest.emplace(dearest.begin(), "step", median(bare));
+  std::string text =
+      R"(// Repose: what was measured, by `effect_bench --costs engine/base/cost_table.h`, which writes this file.
+#pragma once
+
+namespace repose {
+
+struct Cost {
+  const char* what;    ///< "step", or the name of an effect
+  double nanoseconds;  ///< per particle and step, single precision; of an effect, beyond the bare step
+};
+
+inline constexpr Cost kCosts[] = {
+)";
+  for (const auto& [what, nanoseconds] : dearest) {
+    char line[128];
+    std::snprintf(line, sizeof line, "    {\"%s\", %.1f},\n", what.c_str(), nanoseconds);
+    text += line;
+  }
+  return text + "};\n\n}  // namespace repose\n";
 }
 
 std::string to_markdown(const std::vector<EffectCost>& costs, const EffectBenchArguments& arguments) {

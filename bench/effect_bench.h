@@ -6,18 +6,16 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/effect/effect.h"
 
 namespace repose {
 
-/// An effect, asked for as a scene would.
-struct EffectTrial {
-  std::string effect;                  ///< its kName
-  std::string asked;                   ///< the key, for the table
-  std::vector<std::string> base;       ///< changes of the base scene that it is compared with
-  std::vector<std::string> overrides;  ///< further changes that turn it on
+/// One example of an effect.
+struct EffectTrial : Example {
+  std::string effect;  ///< its kName
 };
 
-/// At least one for each effect of the list (engine/effect/effects.h); a test holds the two together.
+/// The examples of all effects of the list (engine/effect/effects.h), in its order.
 std::vector<EffectTrial> effect_trials();
 
 struct EffectBenchArguments {
@@ -39,6 +37,9 @@ struct EffectCost {
 
 /// Errors: 65, 70 of the scenes; 64 for an effect that is not in the list.
 Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& arguments);
+
+/// engine/base/cost_table.h: the bare step, and of each effect its dearest example.
+std::string to_cost_table(const std::vector<EffectCost>& costs);
 
 /// The table of docs/effects.md.
 std::string to_markdown(const std::vector<EffectCost>& costs, const EffectBenchArguments& arguments);

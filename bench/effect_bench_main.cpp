@@ -14,6 +14,13 @@ namespace {
 constexpr const char* kBegin = "<!-- effect_bench: begin -->\n";
 constexpr const char* kEnd = "<!-- effect_bench: end -->\n";
 
+Result<void> write_text(const std::string& path, const std::string& text) {
+  auto out = AtomicFile::create(path);
+  if (!out) return out.error();
+  if (auto written = out->write(text.data(), text.size()); !written) return written;
+  return out->commit();
+}
+
 /// Puts the table between its two marks in a page.
 Result<void> put_into(const std::string& path, const std::string& table) {
   std::ifstream file(path, std::ios::binary);
@@ -25,15 +32,12 @@ Result<void> put_into(const std::string& path, const std::string& table) {
                  std::string("has no lines ") + kBegin + "and " + kEnd + "to put a table between", path};
   }
   page.replace(begin, end - begin, kBegin + table);
-  auto out = AtomicFile::create(path);
-  if (!out) return out.error();
-  if (auto written = out->write(page.data(), page.size()); !written) return written;
-  return out->commit();
+  return write_text(path, page);
 }
 
 int main(int count, char** words) {
   EffectBenchArguments arguments;
-  std::string page;
+  std::string page, table_path;
   CLI::App app{"What each effect costs a scene, in time and in bytes per particle", "effect_bench"};
   app.add_option("--scene", arguments.scene, "the base scene (default: probe_column)");
   app.add_option("--set", arguments.overrides, "change the base scene, such as grid.precision=double");
@@ -42,6 +46,7 @@ int main(int count, char** words) {
   app.add_option("--pairs", arguments.pairs, "pairs of turns (default 7)")->check(CLI::Range(1, 1000));
   app.add_option("--threads", arguments.threads, "threads (default 1)")->check(CLI::Range(1, 1024));
   app.add_option("--page", page, "put the table into this page, docs/effects.md");
+  app.add_option("--costs", table_path, "write what forecasts use, engine/base/cost_table.h");
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
@@ -51,6 +56,9 @@ int main(int count, char** words) {
   const auto costs = bench_effects(arguments);
   if (!costs) return fail(costs.error());
   const std::string table = to_markdown(*costs, arguments);
+  if (!table_path.empty()) {
+    if (auto written = write_text(table_path, to_cost_table(*costs)); !written) return fail(written.error());
+  }
   if (page.empty()) {
     std::printf("%s", table.c_str());
     return 0;

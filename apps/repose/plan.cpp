@@ -4,19 +4,16 @@
 
 #include "apps/repose/command.h"
 #include "apps/repose/measure.h"
+#include "engine/base/costs.h"
 #include "engine/scene/figures.h"
 #include "engine/step/time_step.h"
 
 namespace repose {
 namespace {
 
-/// ns per particle and step on one core with AVX-512, as sand moves and the defaults are chosen; the forecast
-/// says "about".
-constexpr double kNanoseconds = 28.0;
-
-std::string join(const std::vector<std::string>& words) {
+std::string join(const std::vector<std::string>& words, const char* between = ", ") {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
   return text;
 }
 
@@ -31,12 +28,36 @@ void print_passes(const Simulation& simulation) {
   }
 }
 
-void print_effects(const Scene& scene) {
-  std::printf("\neffects\n");
-  for (const EffectStatus& effect : effect_status(scene)) {
-    std::printf("  %-20s %-4s %2zu bytes per particle   %s\n", effect.name.c_str(), effect.on ? "on" : "off",
-                effect.bytes_per_particle, effect.reason.c_str());
+/// The passes that an effect adds, each once although several sets have it: "phase: pass, pass; phase: pass".
+std::string stages_of(const std::string& effect, const Simulation& simulation) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> phases;
+  for (const auto& [where, pass] : simulation.passes()) {
+    if (pass.effect != effect) continue;
+    const std::string phase = where.substr(0, where.find(' '));
+    if (phases.empty() || phases.back().first != phase) phases.emplace_back(phase, std::vector<std::string>{});
+    auto& names = phases.back().second;
+    if (std::find(names.begin(), names.end(), pass.name) == names.end()) names.push_back(pass.name);
   }
+  std::string text;
+  for (const auto& [phase, names] : phases) {
+    text += (text.empty() ? "" : "; ") + phase + ": " + join(names, " + ");
+  }
+  return text;
+}
+
+void print_effects(const Scene& scene, const Simulation& simulation) {
+  std::printf("\neffects                    bytes     time   for the sake of; stages\n");
+  for (const EffectStatus& effect : effect_status(scene)) {
+    if (!effect.on) {
+      std::printf("  %-20s off     -        -   %s\n", effect.name.c_str(), effect.reason.c_str());
+      continue;
+    }
+    std::printf("  %-20s on  %5zu  +%4.1f ns   %s\n", effect.name.c_str(), effect.bytes_per_particle,
+                effect.nanoseconds, effect.reason.c_str());
+    if (const std::string stages = stages_of(effect.name, simulation); !stages.empty())
+      std::printf("  %42s %s\n", "", stages.c_str());
+  }
+  std::printf("  bytes and time are per particle, time per step on one core, about\n");
 }
 
 /// Memory, in the parts that it is made of. What setting up took at its peak has been seen; what steps will add
@@ -71,6 +92,8 @@ void print_forecast(const Scene& scene, const Simulation& simulation, double pro
   const double dt = simulation.longest_step();
   const double duration = last_frame_time(scene), emitted = emitted_by(scene, duration);
   const double steps = duration / dt, mean = particles + 0.5 * emitted;
+  double nanoseconds = cost_of("step");
+  for (const EffectStatus& effect : effect_status(scene)) nanoseconds += effect.nanoseconds;
   std::printf("\nforecast\n");
   std::printf("  particles           %zu", simulation.particles());
   if (emitted > 0.0) {
@@ -82,7 +105,7 @@ void print_forecast(const Scene& scene, const Simulation& simulation, double pro
   print_memory(simulation, process, 1.125 * emitted * static_cast<double>(bytes_per_particle(scene)));
   std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
   std::printf("  time                about %.0f s on %d thread%s\n",
-              steps * mean * kNanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
+              steps * mean * nanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
               simulation.threads() == 1 ? "" : "s");
 }
 
@@ -99,7 +122,7 @@ int plan_command(const SceneArguments& arguments) {
   std::printf("%s: dx %g m, %s precision, %s\n", scene->name.c_str(), scene->grid.spacing,
               scene->grid.precision == Precision::kSingle ? "single" : "double",
               target_name((*simulation)->target()));
-  print_effects(*scene);
+  print_effects(*scene, **simulation);
   print_passes(**simulation);
   print_forecast(*scene, **simulation, process);
   return 0;

@@ -4,6 +4,11 @@
 
 namespace repose {
 
+std::vector<Example> Cohesion::examples() {
+  return {{"cohesion", {}, {"materials.sand.cohesion={}"}},
+          {"cohesion: tension", {}, {R"(materials.sand.cohesion={"tension": {"limit": 100}})"}}};
+}
+
 void Cohesion::declare_in_sand(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, CohesionParameters& p) {
     f.number("strength", p.strength,

@@ -16,6 +16,7 @@ struct CohesionParameters {
 
 struct Cohesion : SandEffect<CohesionParameters> {
   static constexpr const char* kName = "cohesion";
+  static std::vector<Example> examples();
 
   void declare_in_sand(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }

@@ -37,6 +37,15 @@ void describe(Fields& fields, Collider& collider) {
 
 }  // namespace
 
+std::vector<Example> Colliders::examples() {
+  const std::string solids = R"(colliders=[{"name": "floor", "friction": 0.5,
+     "shape": {"type": "plane", "point": [0, 0.0390625, 0]}},
+    {"name": "plate", "shape": {"type": "box", "lower": [0.2, 0.05, 0.2], "upper": [0.3, 0.3, 0.8]})";
+  const std::string motion = R"(, "motion": {"keys": [{"time": 0}, {"time": 1, "translation": [0.1, 0, 0]}]})";
+  return {{"colliders", {"colliders=[]"}, {solids + "}]"}},
+          {"colliders: motion", {solids + "}]"}, {solids + motion + "}]"}}};
+}
+
 void Colliders::declare(Fields& fields) {
   fields.list("colliders", false, "solids that material runs into", [this](Fields& f) {
     Collider collider;

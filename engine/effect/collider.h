@@ -32,6 +32,7 @@ struct Collider {
 /// All colliders of a scene, as one effect: a node may be near several.
 struct Colliders : Effect {
   static constexpr const char* kName = "collider";
+  static std::vector<Example> examples();
 
   std::vector<Collider> list;
 

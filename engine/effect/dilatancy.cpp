@@ -4,6 +4,10 @@
 
 namespace repose {
 
+std::vector<Example> Dilatancy::examples() {
+  return {{"dilatancy", {}, {"materials.sand.dilatancy={}"}}};
+}
+
 void Dilatancy::declare_in_sand(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, DilatancyParameters& p) {
     f.number("angle", p.angle,

@@ -14,6 +14,7 @@ struct DilatancyParameters {
 
 struct Dilatancy : SandEffect<DilatancyParameters> {
   static constexpr const char* kName = "dilatancy";
+  static std::vector<Example> examples();
   /// The channel: log volume opened by shear.
   static constexpr const char* kOpened = "dilation";
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/params.h"
+#include "engine/base/places.h"
 #include "engine/base/result.h"
 #include "engine/effect/contact_log.h"
 #include "engine/effect/solid.h"
@@ -62,8 +63,10 @@ struct Surroundings {
   Index3 origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice
   std::string folder;            ///< where relative paths start
   bool allow_outside_paths = false;
-  std::vector<std::string> solids;                           ///< names of the colliders
-  std::function<std::string(const std::string& key)> where;  ///< "file:line:col: key"
+  std::vector<std::string> solids;  ///< names of the colliders
+  Places places;
+
+  std::string where(const std::string& key) const { return places.where(key); }
 
   /// Builds the shape that stands at a key. Errors: 65, 66, with the key.
   Result<std::shared_ptr<const Shape>> shape(const ShapeDescription& description,
@@ -106,9 +109,18 @@ struct Assembly {
   }
 };
 
+/// What a scene says to ask for an effect: changes of apps/scenes/probe_column.json, a column of sand on a
+/// floor. Tests and benchmarks try every effect by its examples.
+struct Example {
+  std::string asked;                   ///< the key, for tables
+  std::vector<std::string> base;       ///< changes of the scene that it is compared with
+  std::vector<std::string> overrides;  ///< further changes that turn the effect on
+};
+
 /// The hooks that an effect may fill, each with the default of adding nothing. An effect further has
 ///   static constexpr const char* kName      for `plan`, run.json and tests
 ///   bool on() const; std::string why() const
+///   static std::vector<Example> examples()  at least one
 struct Effect {
   /// The names of the scene's materials, before its keys are read.
   void know_materials(const std::vector<std::string>&) {}
@@ -138,6 +150,10 @@ struct Effect {
   /// Passes over nodes, and those that go with order events, frames and steps.
   template <class Real>
   void add_to_nodes(Assembly<Real>&) const {}
+  /// Passes of set k before it tells the nodes: what pushes particles themselves has them tell another
+  /// velocity, and leaves their own, for a step may be tried again.
+  template <class Real>
+  void add_before_scatter(Assembly<Real>&, std::size_t) const {}
   /// Passes of set k just before its particles move.
   template <class Real>
   void add_before_motion(Assembly<Real>&, std::size_t) const {}

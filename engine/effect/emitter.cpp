@@ -202,6 +202,13 @@ void EmitterRuntime<Real>::emit(const Working<Real>& working, std::uint64_t firs
 
 }  // namespace
 
+std::vector<Example> Emitters::examples() {
+  return {{"emitters",
+           {},
+           {R"(emitters=[{"name": "spout", "material": "sand", "type": "disc", "center": [0.5, 1.5, 0.5],
+               "normal": [0, -1, 0], "radius": 0.05, "speed": 1}])"}}};
+}
+
 void Emitters::declare(Fields& fields) {
   fields.list("emitters", false, "where particles begin during the run", [this](Fields& f) {
     Emitter emitter;

@@ -16,6 +16,7 @@ namespace repose {
 /// All emitters of a scene, as one effect. Each is an inlet, in the order of the list.
 struct Emitters : Effect {
   static constexpr const char* kName = "emitter";
+  static std::vector<Example> examples();
 
   std::vector<Emitter> list;
   std::vector<std::string> materials;  ///< names that the reader accepts

@@ -84,6 +84,11 @@ Vec3 ForceField::act(const Vec3& x, const Vec3& v, double dt) const {
   return v - std::expm1(-drag * dt) * (air(x) - v);
 }
 
+std::vector<Example> ForceFields::examples() {
+  return {{"force_fields", {}, {R"(force_fields=[{"name": "wind", "type": "wind", "velocity": [1, 0, 0],
+               "shape": {"type": "box", "lower": [-9, -9, -9], "upper": [0.5, 9, 9]}}])"}}};
+}
+
 void ForceFields::declare(Fields& fields) {
   fields.list("force_fields", false, "accelerations and winds beside gravity", [this](Fields& f) {
     ForceField field;

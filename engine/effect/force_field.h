@@ -35,6 +35,7 @@ struct ForceField {
 
 struct ForceFields : Effect {
   static constexpr const char* kName = "force_field";
+  static std::vector<Example> examples();
 
   std::vector<ForceField> list;
 

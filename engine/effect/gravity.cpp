@@ -4,6 +4,10 @@
 
 namespace repose {
 
+std::vector<Example> Gravity::examples() {
+  return {{"gravity", {"gravity.acceleration=[0, 0, 0]"}, {"gravity.acceleration=[0, -9.81, 0]"}}};
+}
+
 void Gravity::declare(Fields& fields) {
   bool given = false;
   fields.object(

@@ -9,6 +9,7 @@ namespace repose {
 
 struct Gravity : Effect {
   static constexpr const char* kName = "gravity";
+  static std::vector<Example> examples();
   Vec3 acceleration{0.0, -9.81, 0.0};  ///< m/s^2
   double ramp = 0.0;                   ///< s, over which it grows linearly from zero to its value
 

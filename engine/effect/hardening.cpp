@@ -16,6 +16,10 @@ double largest_angle(const HardeningParameters& p) {
 
 }  // namespace
 
+std::vector<Example> Hardening::examples() {
+  return {{"hardening", {}, {"materials.sand.hardening={}"}}};
+}
+
 void Hardening::declare_in_sand(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, HardeningParameters& p) {
     f.number(

@@ -20,6 +20,7 @@ struct HardeningParameters {
 
 struct Hardening : SandEffect<HardeningParameters> {
   static constexpr const char* kName = "hardening";
+  static std::vector<Example> examples();
   /// The channel: q, the sum of the norms of the plastic increments of strain.
   static constexpr const char* kShear = "plastic_shear";
 

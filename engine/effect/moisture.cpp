@@ -5,6 +5,15 @@
 
 namespace repose {
 
+std::vector<Example> Moisture::examples() {
+  return {
+      {"moisture", {}, {R"(materials.sand.moisture={"cohesion_change": 500, "initial": 0.5})"}},
+      {"moisture, wetting",
+       {},
+       {R"(materials.sand.moisture={"cohesion_change": 500})",
+        R"(wetting=[{"name": "rain", "shape": {"type": "box", "lower": [-9, -9, -9], "upper": [0.5, 9, 9]}}])"}}};
+}
+
 void Moisture::declare(Fields& fields) {
   fields.list("wetting", false, "regions that wet sand which has \"moisture\", or dry it", [this](Fields& f) {
     Source source;

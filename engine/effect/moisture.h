@@ -16,6 +16,7 @@ struct MoistureParameters {
 
 struct Moisture : SandEffect<MoistureParameters> {
   static constexpr const char* kName = "moisture";
+  static std::vector<Example> examples();
   /// The channel: w.
   static constexpr const char* kSaturation = "saturation";
 

@@ -78,6 +78,12 @@ class PinnedNodes {
 
 }  // namespace
 
+std::vector<Example> Pins::examples() {
+  return {{"pins",
+           {},
+           {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.1, 1]}}])"}}};
+}
+
 void Pins::declare(Fields& fields) {
   fields.list("pins", false, "regions whose nodes are held, or drawn along, at a velocity", [this](Fields& f) {
     PinDescription pin;

@@ -20,6 +20,7 @@ struct PinDescription {
 
 struct Pins : Effect {
   static constexpr const char* kName = "pin";
+  static std::vector<Example> examples();
 
   std::vector<PinDescription> list;
 

@@ -5,6 +5,10 @@
 
 namespace repose {
 
+std::vector<Example> Prestress::examples() {
+  return {{"prestress", {}, {R"(prestress=[{"body": "column"}])"}}};
+}
+
 void Prestress::declare(Fields& fields) {
   fields.list("prestress", false, "bodies that begin under their weight", [this](Fields& f) {
     Entry entry;

@@ -11,6 +11,7 @@ namespace repose {
 /// Geostatic stress: vertically the weight of what lies above, rho |g| depth; sideways a share of that.
 struct Prestress : Effect {
   static constexpr const char* kName = "prestress";
+  static std::vector<Example> examples();
 
   struct Entry {
     std::string body;

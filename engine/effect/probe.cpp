@@ -169,6 +169,13 @@ MeasurePass<Real> energy_pass(const ProbeDescription& probe, std::shared_ptr<Con
 
 }  // namespace
 
+std::vector<Example> Probes::examples() {
+  return {{"probes: force", {}, {R"(probes=[{"name": "weight", "type": "force", "collider": "floor"}])"}},
+          {"probes: flow",
+           {},
+           {R"(probes=[{"name": "gate", "type": "flow", "point": [0, 0.3, 0], "normal": [0, 1, 0]}])"}}};
+}
+
 void Probes::declare(Fields& fields) {
   fields.list("probes", false, "figures that are measured and reported per frame", [this](Fields& f) {
     ProbeDescription probe;

@@ -25,6 +25,7 @@ struct ProbeDescription {
 
 struct Probes : Effect {
   static constexpr const char* kName = "probe";
+  static std::vector<Example> examples();
 
   std::vector<ProbeDescription> list;
 

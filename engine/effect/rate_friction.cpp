@@ -4,6 +4,10 @@
 
 namespace repose {
 
+std::vector<Example> RateFriction::examples() {
+  return {{"rate_friction", {}, {"materials.sand.rate_friction={}"}}};
+}
+
 void RateFriction::declare_in_sand(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, RateFrictionParameters& p) {
     f.number("rise", p.rise, {.meaning = "mu_2 - mu_s, what fast shear adds to the friction", .low = 0.0});

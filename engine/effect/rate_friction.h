@@ -17,6 +17,7 @@ struct RateFrictionParameters {
 
 struct RateFriction : SandEffect<RateFrictionParameters> {
   static constexpr const char* kName = "rate_friction";
+  static std::vector<Example> examples();
 
   void declare_in_sand(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }

@@ -104,6 +104,13 @@ void SinkRuntime<Real>::run(State<Real>& state, ParticleEdit<Real>& edit) const 
 
 }  // namespace
 
+std::vector<Example> Sinks::examples() {
+  return {
+      {"sinks",
+       {},
+       {R"(sinks=[{"name": "drain", "shape": {"type": "box", "lower": [9, 9, 9], "upper": [10, 10, 10]}}])"}}};
+}
+
 void Sinks::declare(Fields& fields) {
   fields.list("sinks", false, "where particles end", [this](Fields& f) {
     Sink sink;

@@ -25,6 +25,7 @@ struct Sink {
 /// All sinks of a scene, as one effect: a particle that lies in several is counted by the first.
 struct Sinks : Effect {
   static constexpr const char* kName = "sink";
+  static std::vector<Example> examples();
 
   std::vector<Sink> list;
 

@@ -4,6 +4,10 @@
 
 namespace repose {
 
+std::vector<Example> Sleep::examples() {
+  return {{"sleep (awake)", {}, {"sleep={}"}}};
+}
+
 void Sleep::declare(Fields& fields) {
   fields.object(
       "sleep", enabled, false, "blocks whose sand rests are left out until something wakes them",

@@ -8,6 +8,7 @@ namespace repose {
 
 struct Sleep : Effect {
   static constexpr const char* kName = "sleep";
+  static std::vector<Example> examples();
 
   bool enabled = false;
   double speed = 0.0;       ///< m/s; 0: a tenth of sqrt(|g| dx)

@@ -45,6 +45,10 @@ double noise(const Vec3& x, std::uint64_t seed) {
   return sum;
 }
 
+std::vector<Example> Variation::examples() {
+  return {{"variation", {}, {R"(materials.sand.variation={"friction": 0.2})"}}};
+}
+
 void Variation::declare_in_sand(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, VariationParameters& p) {
     f.number("friction", p.friction,

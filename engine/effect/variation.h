@@ -15,6 +15,7 @@ struct VariationParameters {
 
 struct Variation : SandEffect<VariationParameters> {
   static constexpr const char* kName = "variation";
+  static std::vector<Example> examples();
   static constexpr const char* kFriction = "friction_factor";
   static constexpr const char* kCohesion = "cohesion_factor";
 

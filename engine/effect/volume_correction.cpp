@@ -3,6 +3,10 @@
 namespace repose {
 
 // The law has no number to choose: the presence of its key turns it on.
+std::vector<Example> VolumeCorrection::examples() {
+  return {{"volume_correction", {}, {"volume_correction={}"}}};
+}
+
 void VolumeCorrection::declare(Fields& fields) {
   fields.object("volume_correction", enabled, false,
                 "sand that opened in tension closes before it carries load again, Tampubolon et al. 2017",

@@ -11,6 +11,7 @@ namespace repose {
 
 struct VolumeCorrection : Effect {
   static constexpr const char* kName = "volume_correction";
+  static std::vector<Example> examples();
   /// The channel that remembers: log volume gained per particle.
   static constexpr const char* kGained = kVolumeGained;
 

@@ -58,16 +58,21 @@ Surroundings surroundings_of(const Scene& scene, const CompileOptions& options) 
   }
   around.folder = scene.folder;
   around.allow_outside_paths = options.allow_outside_paths;
-  around.where = [places = scene.places](const std::string& key) {
-    const auto place = places.find(key);
-    return place == places.end() ? key : place->second + ": " + key;
-  };
+  around.places = scene.places;
   return around;
 }
 
 StepLimits step_limits(const Scene& scene) {
   const TimeDescription& time = scene.time;
   return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, {}};
+}
+
+/// Notes whose the passes are that have been added since the last time.
+template <class Real>
+void sign(StepPlan<Real>& plan, const char* name) {
+  StepPlan<Real>::for_each_pass(plan, [name](const char*, int, PassDescription& pass) {
+    if (!pass.reason.empty() && pass.effect.empty()) pass.effect = name;
+  });
 }
 
 template <class Real>
@@ -90,27 +95,41 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
   // A lighter node would lose no momentum that its neighbours' sums could still hold.
   plan.least_mass = static_cast<Real>(1e-12 * lightest);
 
-  // Particles to nodes.
-  for (const auto& set : state.sets) {
-    const MaterialRuntime<Real> material = make_material(*plan.kernels, material_of(scene, set.material));
-    plan.scatter.push_back({stress_pass(material),          // tau of the strain
-                            scatter_pass(plan, lattice)});  // mass, momentum, and the impulse of tau
-  }
-
-  // Nodes.
   Assembly<Real> assembly{plan, state, solids, compilation.sets, compilation.surroundings, {}};
   assembly.initialize = [effects = std::make_shared<const Effects>(compilation.effects)](
                             Newcomers<Real>& newcomers) { initialize(*effects, newcomers); };
+  // Has each effect that is on add its passes, and signs them.
+  const auto ask = [&](auto hook) {
+    return [&plan, hook](const auto& effect) {
+      if (!effect.on()) return;
+      hook(effect);
+      sign(plan, effect.kName);
+    };
+  };
+
+  // Particles to nodes.
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    const MaterialRuntime<Real> material =
+        make_material(*plan.kernels, material_of(scene, state.sets[k].material));
+    plan.scatter.push_back({stress_pass(material)});  // tau of the strain
+    for_each_effect(compilation.effects,
+                    ask([&](const auto& effect) { effect.add_before_scatter(assembly, k); }));
+    plan.scatter[k].push_back(scatter_pass(plan, lattice));  // mass, momentum, and the impulse of tau
+  }
+
+  // Nodes.
   plan.nodes.push_back(normalize_pass(plan));  // v* = p/m
   if (plan.transfer.figures().keeps_velocity) {
     plan.order.push_back(before_forces_room_pass<Real>());
     plan.nodes.push_back(before_forces_pass(plan));
+    sign(plan, "transfer");
   }
-  for_each_effect(compilation.effects, [&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
-    if (effect.on()) effect.add_to_nodes(assembly);
-    assembly.first_inlet += effect.inlets().size();
-    assembly.first_outlet += effect.outlets().size();
-  });
+  for_each_effect(compilation.effects,
+                  ask([&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
+                    effect.add_to_nodes(assembly);
+                    assembly.first_inlet += effect.inlets().size();
+                    assembly.first_outlet += effect.outlets().size();
+                  }));
 
   // Nodes to particles.
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
@@ -119,13 +138,11 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
     plan.gather.emplace_back();
     auto& passes = plan.gather[k];
     passes.push_back(gather_pass(plan, lattice));  // v and C, and the velocity that moves
-    for_each_effect(compilation.effects, [&](const auto& effect) {
-      if (effect.on()) effect.add_before_motion(assembly, k);
-    });
+    for_each_effect(compilation.effects,
+                    ask([&](const auto& effect) { effect.add_before_motion(assembly, k); }));
     passes.push_back(advance_pass(plan));  // x += dt v
-    for_each_effect(compilation.effects, [&](const auto& effect) {
-      if (effect.on()) effect.add_after_motion(assembly, k);
-    });
+    for_each_effect(compilation.effects,
+                    ask([&](const auto& effect) { effect.add_after_motion(assembly, k); }));
     passes.push_back(trial_pass(material));  // strain of the step
     if (!description.yields()) continue;
     bool shaped = false;
@@ -134,13 +151,11 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
     });
     if (shaped)
       passes.push_back(yield_surface_pass(material));  // numbers of the material, for effects to change
-    for_each_effect(compilation.effects, [&](const auto& effect) {
-      if (effect.on()) effect.add_before_return(assembly, k);
-    });
+    for_each_effect(compilation.effects,
+                    ask([&](const auto& effect) { effect.add_before_return(assembly, k); }));
     passes.push_back(shaped ? project_shaped_pass(material) : project_pass(material));  // to the yield surface
-    for_each_effect_reversed(compilation.effects, [&](const auto& effect) {
-      if (effect.on()) effect.add_after_return(assembly, k);
-    });
+    for_each_effect_reversed(compilation.effects,
+                             ask([&](const auto& effect) { effect.add_after_return(assembly, k); }));
   }
   return plan;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/costs.h"
 #include "engine/scene/compilation.h"
 
 namespace repose {
@@ -17,7 +18,8 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
     };
     for (const BodyDescription& body : scene.bodies) count(body.name, body.material);
     for (const Inlet& inlet : inlets(scene)) count(inlet.name, inlet.material);
-    list.push_back({effect.kName, effect.on(), effect.why(), channels * real});
+    const double nanoseconds = effect.on() ? cost_of(effect.kName) : 0.0;
+    list.push_back({effect.kName, effect.on(), effect.why(), channels * real, nanoseconds});
   });
   return list;
 }

@@ -14,6 +14,7 @@ struct EffectStatus {
   bool on = false;
   std::string reason;  ///< the key that asked for it, or what would
   std::size_t bytes_per_particle = 0;
+  double nanoseconds = 0.0;  ///< per particle and step, about (engine/base/costs.h); 0 where it is off
 };
 std::vector<EffectStatus> effect_status(const Scene& scene);
 

@@ -104,7 +104,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   if (!options.allow_outside_paths) check_mesh_paths(root, complaints);
   if (!complaints.empty()) return complaints.error(source);
 
-  find_places(root, "", source, scene.places);
+  find_places(root, "", source, scene.places.of_key);
   scene.folder = folder;
   scene.identity = identity_text(root);
   scene.canonical = compact_json(root);

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/params.h"
+#include "engine/base/places.h"
 #include "engine/base/result.h"
 #include "engine/effect/effects.h"
 #include "engine/geometry/seeding.h"
@@ -141,15 +141,11 @@ struct Scene {
     return std::get<E>(effects);
   }
 
-  /// A key as errors found after reading name it: "file:line:col: grid.spacing", or the key alone where a host
-  /// filled the scene. Elements of lists go by name: "bodies.box.shape".
-  std::string where(const std::string& key) const {
-    const auto place = places.find(key);
-    return place == places.end() ? key : place->second + ": " + key;
-  }
+  /// A key as errors found after reading name it.
+  std::string where(const std::string& key) const { return places.where(key); }
 
-  std::map<std::string, std::string> places;  ///< where each key of the file stands, "file:line:col"
-  std::string folder;                         ///< where relative paths start
+  Places places;
+  std::string folder;     ///< where relative paths start
   std::string identity;   ///< what a state of it depends on (engine/scene/identity.h); what is hashed
   std::string canonical;  ///< all of it as compact JSON after overrides and expressions; kept beside a run
 };

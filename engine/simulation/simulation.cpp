@@ -204,17 +204,9 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
 template <class Real>
 std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes() const {
   std::vector<std::pair<std::string, PassDescription>> list;
-  const StepPlan<Real>& plan = stepper_.plan();
-  const auto add = [&list](const std::string& phase, const auto& passes) {
-    for (const auto& pass : passes) list.emplace_back(phase, pass.description);
-  };
-  add("events", plan.events);
-  add("order", plan.order);
-  add("each step", plan.prepare);
-  for (std::size_t k = 0; k < plan.scatter.size(); ++k) add("scatter " + state_.sets[k].name, plan.scatter[k]);
-  add("nodes", plan.nodes);
-  for (std::size_t k = 0; k < plan.gather.size(); ++k) add("gather " + state_.sets[k].name, plan.gather[k]);
-  add("measure", plan.measures);
+  StepPlan<Real>::for_each_pass(stepper_.plan(), [&](const char* phase, int set, const PassDescription& pass) {
+    list.emplace_back(set < 0 ? phase : phase + (" " + state_.sets[static_cast<std::size_t>(set)].name), pass);
+  });
   return list;
 }
 

@@ -76,6 +76,7 @@ struct PassDescription {
   std::string reason;  ///< which scene key asked for it; empty for the core
   std::vector<std::string> reads;
   std::vector<std::string> writes;
+  std::string effect{};  ///< that added it; empty for the core
 };
 
 template <class Real>
@@ -200,6 +201,22 @@ struct StepPlan {
   /// How fast, in m/s, what is no particle moves at most between two times (s): it must not cross more cells in
   /// a step than particles may.
   std::vector<std::function<double(double from, double to)>> speeds;
+
+  /// Calls visit(phase, set, description) for every pass, in the order in which they run; set is -1 where a
+  /// phase has none.
+  template <class Plan, class Visit>
+  static void for_each_pass(Plan& plan, Visit visit) {
+    const auto each = [&visit](const char* phase, int set, auto& passes) {
+      for (auto& pass : passes) visit(phase, set, pass.description);
+    };
+    each("events", -1, plan.events);
+    each("order", -1, plan.order);
+    each("each step", -1, plan.prepare);
+    for (std::size_t k = 0; k < plan.scatter.size(); ++k) each("scatter", static_cast<int>(k), plan.scatter[k]);
+    each("nodes", -1, plan.nodes);
+    for (std::size_t k = 0; k < plan.gather.size(); ++k) each("gather", static_cast<int>(k), plan.gather[k]);
+    each("measure", -1, plan.measures);
+  }
 
   /// Room for the tallies of all measures.
   std::size_t tallies() const {

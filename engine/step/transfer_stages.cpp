@@ -61,7 +61,9 @@ ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>&
             in.lattice = lattice;
             chunk.runs += kernel(in, chunk.scratch.arena.data(), chunk.rows);
             if (!keeps_velocity) return;
-            // Stress is a force: what particles keep their velocity against must not have felt it.
+            // What particles keep their velocity against must have felt no force: neither stress nor a push.
+            in.particles = chunk.set.span(chunk.first, chunk.particles.count);
+            in.particles.ahead = chunk.particles.ahead;
             in.impulse_volume = Real(0);
             kernel(in, chunk.scratch.before_arena.data(), chunk.rows);
           }};

@@ -123,7 +123,6 @@ TEST(Emitters, Newcomers_AreMadeReadyAndCounted) {
   emitters.list = {disc()};
   Surroundings around;
   around.spacing = 0.02;
-  around.where = [](const std::string& key) { return key; };
   ASSERT_TRUE(emitters.prepare(around));
   State<float> state;
   state.spacing = 0.02;
@@ -166,7 +165,6 @@ TEST(Emitters, Newcomers_AreMadeReadyAndCounted) {
 TEST(Emitters, WhatCannotBe_IsRefused) {
   Surroundings around;
   around.spacing = 0.02;
-  around.where = [](const std::string& key) { return key; };
   const auto refusal = [&around](const Emitter& emitter) {
     Emitters emitters;
     emitters.list = {emitter};
