@@ -63,6 +63,7 @@ struct HenckyConstants {
 #endif
 
 #include "kernels/base/matrix_function.h"
+#include "kernels/material/response.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -85,6 +86,20 @@ REPOSE_INLINE Sym3<N> hencky_stress(const HenckyConstants<Scalar<N>>& c, const S
   return plus_identity(N(c.mu + c.mu) * eps, N(c.lambda) * trace(eps));
 }
 
+template <class N>
+REPOSE_INLINE Response<N> hencky_response(const HenckyConstants<Scalar<N>>& c, const N (&eps)[3]) {
+  Response<N> r;
+  const N twice_mu(c.mu + c.mu), lambda(c.lambda), volumetric = lambda * (eps[0] + eps[1] + eps[2]);
+  HWY_UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    r.tau[i] = fma(twice_mu, eps[i], volumetric);
+    HWY_UNROLL(3)
+    for (int j = 0; j < 3; ++j) r.slope[i][j] = i == j ? twice_mu + lambda : lambda;
+  }
+  shear_of_secant(eps, N(c.mu), r.shear);
+  return r;
+}
+
 struct HenckyElastic {
   using Parameters = HenckyParameters;
   template <class T>
@@ -93,6 +108,10 @@ struct HenckyElastic {
   template <class N>
   REPOSE_INLINE static Sym3<N> stress(const HenckyConstants<Scalar<N>>& c, const Sym3<N>& eps) {
     return hencky_stress(c, eps);
+  }
+  template <class N>
+  REPOSE_INLINE static Response<N> respond(const HenckyConstants<Scalar<N>>& c, const N (&eps)[3]) {
+    return hencky_response(c, eps);
   }
 };
 

@@ -39,4 +39,12 @@ struct Elasticity {
   }
 };
 
+/// Over which stretch of strain a unilateral energy leaves out tension (Tampubolon et al. 2017, eqs. 7-10).
+template <class Real>
+struct UnilateralConstants {
+  Real begin;  ///< a: where t/sqrt(3) + f(n) is less, all of the stress acts
+  Real width;  ///< w: where it exceeds a + w, none does
+  Real bend;   ///< c0 of f(n) = c0 n^4 / (1 + n^3)
+};
+
 }  // namespace repose

@@ -90,6 +90,7 @@ struct NeoHookeanConstants {
 #endif
 
 #include "kernels/base/matrix_function.h"
+#include "kernels/material/response.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -103,6 +104,21 @@ struct NeoHookean {
   template <class N>
   REPOSE_INLINE static Sym3<N> stress(const NeoHookeanConstants<Scalar<N>>& c, const Sym3<N>& eps) {
     return plus_identity(N(c.mu) * expm1_twice(eps), N(c.lambda) * trace(eps));
+  }
+  template <class N>
+  REPOSE_INLINE static Response<N> respond(const NeoHookeanConstants<Scalar<N>>& c, const N (&eps)[3]) {
+    Response<N> r;
+    const N mu(c.mu), lambda(c.lambda), volumetric = lambda * (eps[0] + eps[1] + eps[2]);
+    HWY_UNROLL(3)
+    for (int i = 0; i < 3; ++i) {
+      const N stretched = mu * expm1(eps[i] + eps[i]);
+      r.tau[i] = stretched + volumetric;
+      HWY_UNROLL(3)
+      for (int j = 0; j < 3; ++j)
+        r.slope[i][j] = i == j ? fma(N(Scalar<N>(2)), stretched + mu, lambda) : lambda;
+      r.shear[i] = mu;
+    }
+    return r;
   }
 };
 

@@ -237,6 +237,7 @@ void fill_precision(Kernels<T>& table) {
     // A skew matrix is told, but all of C is kept: RPIC gathers as APIC does.
     constexpr Affine kAffine = Transfer::kAffine == Affine::kNone ? Affine::kNone : Affine::kFull;
     table.transfer[s][t].gather = gather<Stencil, kAffine, force_of<Stencil, Transfer>(), T>;
+    table.transfer[s][t].gradient = gather<Stencil, Affine::kNone, force_of<Stencil, Transfer>(), T>;
     table.stencil[s].interpolate = interpolate<Stencil, T>;
   });
 }

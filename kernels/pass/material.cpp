@@ -84,7 +84,9 @@ void stress(const MaterialInput<T>& in) {
 
 template <class Material, class T>
 MaterialKernels<T> material_kernels() {
-  MaterialKernels<T> table{trial<T>, nullptr, stress<Material, T>, nullptr};
+  MaterialKernels<T> table{};
+  table.trial = trial<T>;
+  table.stress = stress<Material, T>;
   if constexpr (Material::Parameters::kYields) {
     table.project = project<Material, T>;
     table.project_shaped = project_shaped<Material, T>;

@@ -118,6 +118,34 @@ struct RateConstants {
   Real inertia;    ///< sqrt(2 rho_s / K) d, in s: I = inertia dg / (dt sqrt(|t|))
 };
 
+/// How sand answers within an implicit step (kernels/material/drucker_prager_response.h). Materials that do not
+/// yield answer alike in all.
+enum class TangentMode { kExact, kProjected, kLagged, kUnilateral };
+inline constexpr int kTangentModes = 4;
+
+/// What the change of a particle's stress with the velocities takes (kernels/pass/stiffness.cpp): U and Q by
+/// rows, the slopes A by rows, theta and beta of the pairs of axes xy xz yz. Particles lie in groups: number k
+/// of particle p at (p / kTangentGroup * kTangentValues + k) * kTangentGroup + p % kTangentGroup.
+inline constexpr std::size_t kTangentValues = 33;
+inline constexpr std::size_t kTangentGroup = 16;
+
+template <class Real>
+struct TangentInput {
+  MaterialInput<Real> material;          ///< strain is the trial strain; no stress is written
+  YieldInput<Real> surface;              ///< by which it yields; cone null: by the numbers of the material
+  UnilateralConstants<Real> unilateral;  ///< of the mode of that name
+  Real* tangent;                         ///< out, room for whole groups
+};
+
+/// Pushes of particles on nodes: node i receives -scale S g_i, g_i the gradient of its weight.
+template <class Real>
+struct PushInput {
+  ParticleSpan<Real> particles;           ///< positions are read
+  const Real* matrix[kAffineComponents];  ///< S by rows, Pa
+  Real scale;                             ///< such as dt V0, s m^3
+  Lattice<Real> lattice;
+};
+
 template <class Real>
 struct MaterialKernels {
   void (*trial)(const MaterialInput<Real>&);  ///< strain <- elastic trial strain after dt of the gradient
@@ -126,6 +154,9 @@ struct MaterialKernels {
   void (*stress)(const MaterialInput<Real>&);  ///< stress <- tau(strain)
   /// As project, by numbers per particle; null where project is.
   void (*project_shaped)(const MaterialInput<Real>&, const YieldInput<Real>&);
+  void (*linearize[kTangentModes])(const TangentInput<Real>&);
+  /// stress <- that of the unilateral energy, of the trial strain; null where project is.
+  void (*fading_stress)(const MaterialInput<Real>&, const UnilateralConstants<Real>&);
 };
 
 template <class Real>
@@ -134,6 +165,9 @@ struct TransferKernels {
   /// runs.
   std::size_t (*scatter)(const ScatterInput<Real>&, Real* arena, std::uint64_t& rows);
   void (*gather)(const GatherInput<Real>&, const Real* arena);
+  /// The gradient alone, and the push that is its transpose: momentum and rows as in scatter.
+  void (*gradient)(const GatherInput<Real>&, const Real* arena);
+  void (*push)(const PushInput<Real>&, Real* arena, std::uint64_t& rows);
 };
 
 template <class Real>
@@ -183,6 +217,13 @@ struct Kernels {
   void (*cut_tension)(Real* const strain[6], const HenckyConstants<Real>& elastic, Real limit,
                       Real* trace_of_trial, std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
+
+  /// matrix <- S = tau (I + dt grad v)^-T, by rows.
+  void (*turn)(const Real* const stress[6], const Real* const gradient[9], Real dt, Real* const matrix[9],
+               std::size_t count);
+  /// matrix <- the change of S with a change `gradient` of dt grad v.
+  void (*apply_tangent)(const Real* tangent, const Real* const gradient[9], Real* const matrix[9],
+                        std::size_t count);
 
   /// Momentum to velocity; nodes lighter than `least_mass` become empty. Returns the active nodes, bit x*16 +
   /// y*4 + z.

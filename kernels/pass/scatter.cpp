@@ -102,6 +102,29 @@ REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size
   }
 }
 
+/// The same of pushes alone: no mass and no momentum but that of -scale S g_i.
+template <class Stencil, Force force, class T>
+REPOSE_INLINE void stage(const PushInput<T>& in, std::size_t first, std::size_t lanes, Staged<T>& out) {
+  using P = Pack<T>;
+  constexpr bool kPush = force == Force::kGradients;
+  locate<Stencil, force>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
+  const P zero(T(0));
+  P momentum[3] = {zero, zero, zero}, change[3][3];
+  HWY_UNROLL(3)
+  for (int axis = 0; axis < 3; ++axis) {
+    const P scale(kPush ? -in.scale / in.lattice.spacing : -in.scale * in.lattice.axis_scale[axis]);
+    HWY_UNROLL(3)
+    for (int row = 0; row < 3; ++row) {
+      change[axis][row] = scale * P::load_first(in.matrix[3 * row + axis] + first, lanes);
+      if constexpr (!kPush)
+        momentum[row] = fnma(change[axis][row], out.stencil.from_center[axis], momentum[row]);
+    }
+    store_interleaved(zero, change[axis][0], change[axis][1], change[axis][2],
+                      kPush ? out.push[axis] : out.slope[axis]);
+  }
+  store_interleaved(zero, momentum[0], momentum[1], momentum[2], out.center);
+}
+
 /// base + k slope for a small k known at compile time.
 template <int k, class T>
 REPOSE_INLINE Row<T> step_row(const Row<T>& base, const Row<T>& slope) {
@@ -183,9 +206,10 @@ REPOSE_INLINE void flush(std::int32_t node, Row<T> (&rows)[kWidth * kWidth], T* 
   touched |= square << (node / kArenaSide);
 }
 
-template <class Stencil, Affine affine, Force force, class T>
-std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched) {
-  using S = Shape<Stencil, affine, force>;
+/// Adds particles to the arena, a run at a time; `prepare(first, lanes, staged)` stages a pack of them. Returns
+/// the runs.
+template <class S, class T, class Prepare>
+REPOSE_INLINE std::size_t add_runs(std::size_t count, T* arena, std::uint64_t& touched, Prepare prepare) {
   Staged<T> staged;
   Row<T> rows[S::kWidth * S::kWidth];
   HWY_UNROLL(16)
@@ -193,8 +217,8 @@ std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched)
   const Row<T> z_positions = node_positions(T(S::kCenter));
   std::int32_t node = -1;
   std::size_t runs = 0;
-  for (const auto [first, lanes] : packs<T>(in.particles.count)) {
-    stage<Stencil, affine, force>(in, first, lanes, staged);
+  for (const auto [first, lanes] : packs<T>(count)) {
+    prepare(first, lanes, staged);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (staged.stencil.node[lane] != node) {
         if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
@@ -208,10 +232,27 @@ std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched)
   return runs;
 }
 
+template <class Stencil, Affine affine, Force force, class T>
+std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched) {
+  return add_runs<Shape<Stencil, affine, force>>(
+      in.particles.count, arena, touched,
+      [&in](std::size_t first, std::size_t lanes, Staged<T>& staged)
+          HWY_ATTR { stage<Stencil, affine, force>(in, first, lanes, staged); });
+}
+
+template <class Stencil, Force force, class T>
+void push(const PushInput<T>& in, T* arena, std::uint64_t& touched) {
+  add_runs<Shape<Stencil, Affine::kNone, force>>(
+      in.particles.count, arena, touched,
+      [&in](std::size_t first, std::size_t lanes, Staged<T>& staged)
+          HWY_ATTR { stage<Stencil, force>(in, first, lanes, staged); });
+}
+
 template <class T>
 void fill_precision(Kernels<T>& table) {
   for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
     table.transfer[s][t].scatter = scatter<Stencil, Transfer::kAffine, force_of<Stencil, Transfer>(), T>;
+    table.transfer[s][t].push = push<Stencil, force_of<Stencil, Transfer>(), T>;
   });
 }
 

@@ -1,0 +1,260 @@
+// Repose: what an implicit step asks of particles. With G = dt grad v at the particle, b = (I + G) b^n (I +
+// G)^T its trial state and tau the Kirchhoff stress there, forces are f_i = -V0 S g_i, S = tau (I + G)^-T, g_i
+// the gradient of node i's weight (Klar et al. 2016, eq. 23, pulled back to the step's begin). Its change is
+// linear in dG,
+//   dS = (d tau - tau dL^T)(I + G)^-T,  dL = dG (I + G)^-1,
+// and in the axes U of b, scaled by the stretches s, it takes 15 numbers beside U and Q = (I + G)^-1 U diag(s)
+// (supplement, algorithm 2): no tensor with 81 entries is ever built.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/pass/stiffness.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+#include "kernels/base/targets.h"
+
+#include "kernels/base/eigen_sym3.h"
+#include "kernels/material/drucker_prager_response.h"
+#include "kernels/material/materials.h"
+#include "kernels/material/response.h"
+#include "kernels/pass/tables.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace repose {
+namespace HWY_NAMESPACE {
+namespace {
+
+template <class N>
+REPOSE_INLINE Mat3<N> inverse(const Mat3<N>& a) {
+  const auto minor = [&](int r0, int c0, int r1, int c1) {
+    return fnma(a.m[r0][c1], a.m[r1][c0], a.m[r0][c0] * a.m[r1][c1]);
+  };
+  const N scale = N(Scalar<N>(1)) / determinant(a);
+  Mat3<N> out;
+  HWY_UNROLL(3)
+  for (int r = 0; r < 3; ++r) {
+    HWY_UNROLL(3)
+    for (int c = 0; c < 3; ++c) {
+      out.m[c][r] = scale * minor((r + 1) % 3, (c + 1) % 3, (r + 2) % 3, (c + 2) % 3);
+    }
+  }
+  return out;
+}
+
+/// Rows of a matrix of packs from nine arrays.
+template <class T>
+REPOSE_INLINE Mat3<Pack<T>> load_mat3(const T* const from[9], std::size_t first, std::size_t lanes) {
+  Mat3<Pack<T>> a;
+  HWY_UNROLL(9)
+  for (int k = 0; k < 9; ++k) a.m[k / 3][k % 3] = Pack<T>::load_first(from[k] + first, lanes);
+  return a;
+}
+
+template <class T>
+REPOSE_INLINE void store_mat3(const Mat3<Pack<T>>& a, T* const to[9], std::size_t first, std::size_t lanes) {
+  HWY_UNROLL(9)
+  for (int k = 0; k < 9; ++k) a.m[k / 3][k % 3].store_first(to[k] + first, lanes);
+}
+
+/// (I + dt grad v)^-1
+template <class T>
+REPOSE_INLINE Mat3<Pack<T>> load_inverse(const T* const gradient[9], T dt, std::size_t first,
+                                         std::size_t lanes) {
+  Mat3<Pack<T>> step = load_mat3<T>(gradient, first, lanes);
+  HWY_UNROLL(9)
+  for (int k = 0; k < 9; ++k) {
+    step.m[k / 3][k % 3] = fma(Pack<T>(dt), step.m[k / 3][k % 3], Pack<T>(T(k % 4 == 0 ? 1 : 0)));
+  }
+  return inverse(step);
+}
+
+/// matrix <- tau (I + dt grad v)^-T
+template <class T>
+void turn(const T* const stress[6], const T* const gradient[9], T dt, T* const matrix[9], std::size_t count) {
+  static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  for (const auto [first, lanes] : packs<T>(count)) {
+    const Mat3<Pack<T>> back = load_inverse<T>(gradient, dt, first, lanes);
+    Pack<T> tau[6];
+    HWY_UNROLL(6)
+    for (int k = 0; k < 6; ++k) tau[k] = Pack<T>::load_first(stress[k] + first, lanes);
+    Mat3<Pack<T>> s;
+    HWY_UNROLL(3)
+    for (int r = 0; r < 3; ++r) {
+      HWY_UNROLL(3)
+      for (int c = 0; c < 3; ++c) {
+        s.m[r][c] = fma(tau[kSymmetric[r][0]], back.m[c][0],
+                        fma(tau[kSymmetric[r][1]], back.m[c][1], tau[kSymmetric[r][2]] * back.m[c][2]));
+      }
+    }
+    store_mat3(s, matrix, first, lanes);
+  }
+}
+
+/// Where the numbers of the particles from `first` on stand: packs of any width find theirs in groups of 16.
+template <class T>
+REPOSE_INLINE T* tangent_at(T* tangent, std::size_t first) {
+  return tangent + (first / kTangentGroup) * kTangentValues * kTangentGroup + first % kTangentGroup;
+}
+
+template <class T>
+REPOSE_INLINE void store_tangent(const Eigen3<Pack<T>>& axes, const Mat3<Pack<T>>& back,
+                                 const Response<Pack<T>>& r, T* to) {
+  using P = Pack<T>;
+  P stretch[3], per_stretch[3];
+  HWY_UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    stretch[i] = expm1(axes.value[i]) + P(T(1));
+    per_stretch[i] = P(T(1)) / stretch[i];
+  }
+  HWY_UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    HWY_UNROLL(3)
+    for (int j = 0; j < 3; ++j) {
+      axes.u[i][j].store(to + static_cast<std::size_t>(3 * i + j) * kTangentGroup);
+      const P q = fma(back.m[i][0], axes.u[0][j], fma(back.m[i][1], axes.u[1][j], back.m[i][2] * axes.u[2][j]));
+      (q * stretch[j]).store(to + static_cast<std::size_t>(9 + 3 * i + j) * kTangentGroup);
+      const P slope = i == j ? r.slope[i][i] - r.tau[i] : r.slope[i][j];
+      (slope * per_stretch[i] * per_stretch[j])
+          .store(to + static_cast<std::size_t>(18 + 3 * i + j) * kTangentGroup);
+    }
+  }
+  HWY_UNROLL(3)
+  for (int k = 0; k < 3; ++k) {
+    const int i = kPairs[k][0], j = kPairs[k][1];
+    r.shear[k].store(to + static_cast<std::size_t>(27 + k) * kTangentGroup);
+    // theta lambda_i - tau_i = theta lambda_j - tau_j; of the two the mean is symmetric to the last bit.
+    const P one_way = fma(r.shear[k] * stretch[i], stretch[i], -r.tau[i]),
+            other_way = fma(r.shear[k] * stretch[j], stretch[j], -r.tau[j]);
+    (P(T(0.5)) * (one_way + other_way) * per_stretch[i] * per_stretch[j])
+        .store(to + static_cast<std::size_t>(30 + k) * kTangentGroup);
+  }
+}
+
+template <class Material, TangentMode mode, class T>
+void linearize(const TangentInput<T>& in) {
+  using P = Pack<T>;
+  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.material.constants);
+  for (const auto [first, lanes] : packs<T>(in.material.count)) {
+    const auto entry = [&](int k) HWY_ATTR { return P::load_first(in.material.strain[k] + first, lanes); };
+    const Eigen3<P> axes = eigen_sym3(Sym3<P>{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)});
+    Response<P> response;
+    if constexpr (!Material::Parameters::kYields) {
+      response = Material::respond(constants, axes.value);
+    } else if constexpr (mode == TangentMode::kLagged) {
+      response = hencky_response(constants.elastic, axes.value);
+    } else if constexpr (mode == TangentMode::kUnilateral) {
+      response = unilateral_response(constants.elastic, in.unilateral, axes.value);
+    } else {
+      const auto number = [first = first, lanes = lanes](const T* from, T without) HWY_ATTR {
+        return from == nullptr ? P(without) : P::load_first(from + first, lanes);
+      };
+      const YieldSurface<P> surface{number(in.surface.cone, constants.cone), number(in.surface.cohesion, T(0)),
+                                    number(in.surface.dilatancy, T(0))};
+      response = returned_response<mode == TangentMode::kExact>(constants.elastic, axes.value, surface);
+    }
+    const auto back = load_inverse<T>(in.material.gradient, in.material.dt, first, lanes);
+    store_tangent(axes, back, response, tangent_at(in.tangent, first));
+  }
+}
+
+/// stress <- that of the unilateral energy at the trial strain
+template <class Material, class T>
+void fading_stress(const MaterialInput<T>& in, const UnilateralConstants<T>& unilateral) {
+  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
+  for (const auto [first, lanes] : packs<T>(in.count)) {
+    const auto entry = [&](int k) HWY_ATTR { return Pack<T>::load_first(in.strain[k] + first, lanes); };
+    const auto tau =
+        unilateral_stress(constants.elastic, unilateral,
+                          Sym3<Pack<T>>{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)});
+    const Pack<T> all[6] = {tau.xx, tau.xy, tau.xz, tau.yy, tau.yz, tau.zz};
+    HWY_UNROLL(6)
+    for (int k = 0; k < 6; ++k) all[k].store_first(in.stress[k] + first, lanes);
+  }
+}
+
+/// matrix <- dS = U T Q^T of the change dG, with L = U^T dG Q.
+template <class T>
+void apply_tangent(const T* tangent, const T* const gradient[9], T* const matrix[9], std::size_t count) {
+  using P = Pack<T>;
+  for (const auto [first, lanes] : packs<T>(count)) {
+    const T* from = tangent_at(tangent, first);
+    const auto number = [from](int k)
+                            HWY_ATTR { return P::load(from + static_cast<std::size_t>(k) * kTangentGroup); };
+    const Mat3<P> g = load_mat3<T>(gradient, first, lanes);
+    P u[3][3], q[3][3], half[3][3], l[3][3], t[3][3];
+    HWY_UNROLL(9)
+    for (int k = 0; k < 9; ++k) {
+      u[k / 3][k % 3] = number(k);
+      q[k / 3][k % 3] = number(9 + k);
+    }
+    HWY_UNROLL(3)
+    for (int r = 0; r < 3; ++r) {
+      HWY_UNROLL(3)
+      for (int c = 0; c < 3; ++c)
+        half[r][c] = fma(g.m[r][0], q[0][c], fma(g.m[r][1], q[1][c], g.m[r][2] * q[2][c]));
+    }
+    HWY_UNROLL(3)
+    for (int i = 0; i < 3; ++i) {
+      HWY_UNROLL(3)
+      for (int j = 0; j < 3; ++j)
+        l[i][j] = fma(u[0][i], half[0][j], fma(u[1][i], half[1][j], u[2][i] * half[2][j]));
+    }
+    HWY_UNROLL(3)
+    for (int i = 0; i < 3; ++i) {
+      const int a = 18 + 3 * i;
+      t[i][i] = fma(number(a), l[0][0], fma(number(a + 1), l[1][1], number(a + 2) * l[2][2]));
+      const int r = kPairs[i][0], c = kPairs[i][1];
+      const P theta = number(27 + i), beta = number(30 + i);
+      t[r][c] = fma(theta, l[r][c], beta * l[c][r]);
+      t[c][r] = fma(theta, l[c][r], beta * l[r][c]);
+    }
+    HWY_UNROLL(3)
+    for (int i = 0; i < 3; ++i) {
+      HWY_UNROLL(3)
+      for (int c = 0; c < 3; ++c) half[i][c] = fma(t[i][0], q[c][0], fma(t[i][1], q[c][1], t[i][2] * q[c][2]));
+    }
+    Mat3<P> s;
+    HWY_UNROLL(3)
+    for (int r = 0; r < 3; ++r) {
+      HWY_UNROLL(3)
+      for (int c = 0; c < 3; ++c) {
+        s.m[r][c] = fma(u[r][0], half[0][c], fma(u[r][1], half[1][c], u[r][2] * half[2][c]));
+      }
+    }
+    store_mat3(s, matrix, first, lanes);
+  }
+}
+
+template <class Material, class T>
+void fill_material_tangents(MaterialKernels<T>& table) {
+  table.linearize[0] = linearize<Material, TangentMode::kExact, T>;
+  table.linearize[1] = linearize<Material, TangentMode::kProjected, T>;
+  table.linearize[2] = linearize<Material, TangentMode::kLagged, T>;
+  table.linearize[3] = linearize<Material, TangentMode::kUnilateral, T>;
+  table.fading_stress = nullptr;
+  if constexpr (Material::Parameters::kYields) table.fading_stress = fading_stress<Material, T>;
+}
+
+template <class T>
+void fill_precision(Kernels<T>& table) {
+  table.turn = turn<T>;
+  table.apply_tangent = apply_tangent<T>;
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (fill_material_tangents<std::tuple_element_t<k, Materials>>(table.material[k]), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<Materials>>());
+}
+
+void fill(KernelTables& tables) {
+  fill_precision(tables.single);
+  fill_precision(tables.dual);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace repose
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace repose {
+REPOSE_DEFINE_FILL(stiffness)
+}  // namespace repose
+#endif
