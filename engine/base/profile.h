@@ -7,8 +7,8 @@
 
 namespace repose {
 
-enum class Phase { kOrder, kScatter, kNodes, kInspect, kGather };
-inline constexpr std::array<const char*, 5> kPhaseNames{"order", "scatter", "nodes", "inspect", "gather"};
+enum class Phase { kOrder, kScatter, kNodes, kSolve, kInspect, kGather };
+inline constexpr std::array<const char*, 6> kPhaseNames{"order", "scatter", "nodes", "solve", "inspect", "gather"};
 
 /// Seconds spent per phase.
 struct Profile {

@@ -78,7 +78,13 @@ void Colliders::add_to_nodes(Assembly<Real>& assembly) const {
            return before != after && std::min(solid.distance(before), solid.distance(after)) <= radius;
          }});
   }
-  plan.nodes.push_back(
+  if (plan.implicit) {
+    plan.contacts.push_back({{"contacts of solids", "colliders", {"contacts"}, {}},
+                             [tables](const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) {
+                               tables->list(block, holds);
+                             }});
+  }
+  plan.holds.push_back(
       {{"collide, friction", "colliders", {"node velocity", "contacts"}, {"node velocity", "v-tilde"}},
        [tables](NodeBlock<Real>& block) { tables->collide(block); }});
 }

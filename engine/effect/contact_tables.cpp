@@ -304,15 +304,17 @@ bool ContactTables<Real>::for_each_node(NodeBlock<Real>& block, Real* rubbed, Vi
   return any_friction;
 }
 
+template <class Real>
+Vec3 ContactTables<Real>::place_of(const NodeBlock<Real>& block, std::size_t node) const {
+  const std::array<double, 3> offset{double(node / 16), double(node / 4 % 4), double(node % 4)};
+  return in_plane(block.state.world(block.state.grid.blocks()[block.block], offset), flat_axis_);
+}
+
 /// Returns whether friction changed a node.
 template <class Real>
 bool ContactTables<Real>::collide_block(NodeBlock<Real>& block, const Touch* touches, std::size_t count,
                                         Real* rubbed) const {
-  const State<Real>& state = block.state;
-  const auto place = [&](std::size_t node) {
-    const std::array<double, 3> offset{double(node / 16), double(node / 4 % 4), double(node % 4)};
-    return in_plane(state.world(state.grid.blocks()[block.block], offset), flat_axis_);
-  };
+  const auto place = [&](std::size_t node) { return place_of(block, node); };
   if (log_ != nullptr) {
     ContactSums* const row = log_->row(block.block);
     std::fill_n(row, log_->solids(), ContactSums());
@@ -346,6 +348,39 @@ void ContactTables<Real>::collide(NodeBlock<Real>& block) const {
   if (slot < 0) return;
   rubbed_field.live[static_cast<std::size_t>(slot)] = any_friction ? 1 : 0;
   if (any_friction) std::copy_n(rubbed, kBlockValues, rubbed_field.block(block.block));
+}
+
+template <class Real>
+void ContactTables<Real>::list(const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) const {
+  const bool listed = any_moves() && listed_begin_[block.block] < listed_begin_[block.block + 1];
+  if (of_block_[block.block] == nullptr && !listed) return;
+  Touch touches[kMost];
+  const std::size_t count = find_touches(block, touches);
+  // No node goes farther than a cell in a step: that far a contact may matter.
+  const Real fast[3] = {static_cast<Real>(spacing_ / static_cast<double>(block.dt)), Real(0), Real(0)};
+  for (std::size_t node = 0; node < kBlockNodes; ++node) {
+    if (!(block.nodes[node * kNodeValues] > Real(0))) continue;
+    for (std::size_t k = 0; k < count; ++k) {
+      Real wall[3] = {};
+      const Touch& touch = touches[k];
+      const NodeContact<Real> at = touch.moving == nullptr ? touch.nodes[node]
+                                                           : meet(*touch.moving, place_of(block, node),
+                                                                  static_cast<double>(block.dt), fast, wall);
+      const Contact contact = solids_[touch.solid].contact;
+      const bool against = contact == Contact::kSeparating;
+      if (!(at.distance < (against ? static_cast<Real>(spacing_) : Real(0)))) continue;
+      Hold<Real> hold;
+      hold.node = static_cast<int>(node);
+      hold.kind = contact == Contact::kSticky ? Hold<Real>::Kind::kAll
+                  : against                   ? Hold<Real>::Kind::kAgainst
+                                              : Hold<Real>::Kind::kAlong;
+      std::copy_n(at.normal, 3, hold.normal);
+      std::copy_n(wall, 3, hold.velocity);
+      hold.bound = dot(at.normal, wall);
+      if (against) hold.bound += (std::min(at.distance, Real(0)) - at.distance) / block.dt;
+      holds.push_back(hold);
+    }
+  }
 }
 
 template class ContactTables<float>;

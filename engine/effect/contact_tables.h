@@ -32,6 +32,8 @@ class ContactTables {
   /// Where moving solids stand before and after the step; a new list when they have used up its margin.
   void prepare(State<Real>& state, Real dt);
   void collide(NodeBlock<Real>& block) const;
+  /// What may hold the nodes of a block in this step.
+  void list(const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) const;
 
   bool any_moves() const { return !moving_.empty(); }
   /// Largest speed of the surface of moving solids where there are blocks, m/s.
@@ -70,6 +72,7 @@ class ContactTables {
   void list_moving(const State<Real>& state);
   void share_out(State<Real>& state);
   bool rubs(std::size_t block) const;
+  Vec3 place_of(const NodeBlock<Real>& block, std::size_t node) const;
   std::size_t find_touches(const NodeBlock<Real>& block, Touch* touches) const;
   NodeContact<Real> meet(const Moving& moving, const Vec3& x, double dt, const Real* v, Real* wall) const;
   template <bool kAnyMoves, class Record>

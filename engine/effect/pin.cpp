@@ -40,16 +40,33 @@ class PinnedNodes {
     }
   }
 
-  void hold(NodeBlock<Real>& block) const {
+  /// Calls visit(node, pin) for the nodes with mass that are held.
+  template <class Visit>
+  void for_each_held(const NodeBlock<Real>& block, Visit visit) const {
     for (std::size_t i = begin_[block.block]; i < begin_[block.block + 1]; ++i) {
       const PinDescription& pin = pins_[held_[i].pin];
       if (block.time < pin.start || block.time >= pin.end) continue;
       for (std::uint64_t rest = held_[i].nodes; rest != 0; rest &= rest - 1) {
-        Real* node = block.nodes + std::countr_zero(rest) * kNodeValues;
-        if (!(node[0] > Real(0))) continue;
-        for (int axis = 0; axis < 3; ++axis) node[1 + axis] = static_cast<Real>(pin.velocity[axis]);
+        const int node = std::countr_zero(rest);
+        if (block.nodes[node * kNodeValues] > Real(0)) visit(node, pin);
       }
     }
+  }
+
+  void hold(NodeBlock<Real>& block) const {
+    for_each_held(block, [&block](int node, const PinDescription& pin) {
+      Real* const v = block.nodes + node * kNodeValues + 1;
+      for (int axis = 0; axis < 3; ++axis) v[axis] = static_cast<Real>(pin.velocity[axis]);
+    });
+  }
+
+  void list(const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) const {
+    for_each_held(block, [&holds](int node, const PinDescription& pin) {
+      Hold<Real> hold;
+      hold.node = node;
+      for (int axis = 0; axis < 3; ++axis) hold.velocity[axis] = static_cast<Real>(pin.velocity[axis]);
+      holds.push_back(hold);
+    });
   }
 
  private:
@@ -132,7 +149,12 @@ void Pins::add_to_nodes(Assembly<Real>& assembly) const {
                   pin.solid->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <= block_reach(state.spacing);
          });
        }});
-  assembly.plan.nodes.push_back({{"pins", "pins", {"node velocity", "pinned nodes"}, {"node velocity"}},
+  if (assembly.plan.implicit) {
+    assembly.plan.contacts.push_back(
+        {{"pinned nodes", "pins", {"pinned nodes"}, {}},
+         [nodes](const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) { nodes->list(block, holds); }});
+  }
+  assembly.plan.holds.push_back({{"pins", "pins", {"node velocity", "pinned nodes"}, {"node velocity"}},
                                  [nodes](NodeBlock<Real>& block) { nodes->hold(block); }});
 }
 

@@ -85,12 +85,15 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
   plan.transfer = transfer_choice(scene);
   plan.limits = step_limits(scene);
   plan.advection = scene.grid.advection;
+  const bool implicit = scene.time.integrator == Integrator::kImplicit;
+  if (implicit) plan.implicit.emplace(ImplicitPlan<Real>{scene.implicit, {}});
   const Lattice<Real> lattice = make_lattice(state, plan.transfer);
   double lightest = std::numeric_limits<double>::infinity();
   for (const auto& set : state.sets) {
+    lightest = std::min(lightest, set.particle_mass);
+    if (implicit) continue;  // no wave and no pulse bounds a step that is solved for
     const Elasticity& e = material_of(scene, set.material).elasticity();
     plan.limits.sets.push_back({e.sound_speed(), std::sqrt((3.0 * e.lambda() + 2.0 * e.mu()) / e.density)});
-    lightest = std::min(lightest, set.particle_mass);
   }
   // A lighter node would lose no momentum that its neighbours' sums could still hold.
   plan.least_mass = static_cast<Real>(1e-12 * lightest);
@@ -111,7 +114,8 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     const MaterialRuntime<Real> material =
         make_material(*plan.kernels, material_of(scene, state.sets[k].material));
-    plan.scatter.push_back({stress_pass(material)});  // tau of the strain
+    plan.scatter.emplace_back();
+    if (!implicit) plan.scatter[k].push_back(stress_pass(material));  // tau of the strain
     for_each_effect(compilation.effects,
                     ask([&](const auto& effect) { effect.add_before_scatter(assembly, k); }));
     plan.scatter[k].push_back(scatter_pass(plan, lattice));  // mass, momentum, and the impulse of tau
@@ -123,6 +127,10 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
     plan.order.push_back(before_forces_room_pass<Real>());
     plan.nodes.push_back(before_forces_pass(plan));
     sign(plan, "transfer");
+  } else if (implicit) {
+    plan.order.push_back(before_forces_room_pass<Real>());
+    plan.nodes.push_back(begin_pass<Real>());
+    sign(plan, "integrator");
   }
   for_each_effect(compilation.effects,
                   ask([&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
@@ -144,7 +152,9 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
     for_each_effect(compilation.effects,
                     ask([&](const auto& effect) { effect.add_after_motion(assembly, k); }));
     passes.push_back(trial_pass(material));  // strain of the step
+    if (implicit) plan.implicit->sets.push_back({material.kernels, material.constants, false, {}});
     if (!description.yields()) continue;
+    const std::size_t surface = passes.size();
     bool shaped = false;
     for_each_effect(compilation.effects, [&](const auto& effect) {
       shaped = shaped || (effect.on() && effect.shapes_yield(compilation.sets[k]));
@@ -153,6 +163,11 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
       passes.push_back(yield_surface_pass(material));  // numbers of the material, for effects to change
     for_each_effect(compilation.effects,
                     ask([&](const auto& effect) { effect.add_before_return(assembly, k); }));
+    if (implicit) {
+      plan.implicit->sets.back().shaped = shaped;
+      plan.implicit->sets.back().surface.assign(passes.begin() + static_cast<std::ptrdiff_t>(surface),
+                                                passes.end());
+    }
     passes.push_back(shaped ? project_shaped_pass(material) : project_pass(material));  // to the yield surface
     for_each_effect_reversed(compilation.effects,
                              ask([&](const auto& effect) { effect.add_after_return(assembly, k); }));

@@ -109,7 +109,55 @@ void describe_grid(Fields& fields, GridDescription& grid) {
                 [&](Fields& f) { describe_periodic(f, grid); });
 }
 
+constexpr Choice kIntegrators[] = {
+    {"explicit", "short steps, each cheap"},
+    {"implicit", "backward Euler: long steps, each solved for (key 'implicit')"},
+};
+
+constexpr Choice kTangentModeChoices[] = {
+    {"exact",
+     "sand yields within the solve, with the whole tangent; not symmetric: generalised conjugate residual"},
+    {"projected", "the same, with the symmetric part of the tangent: conjugate residual"},
+    {"lagged", "elastic within the solve, sand yields afterwards: cohesion that grows with the step"},
+    {"unilateral", "an energy without tension within the solve, sand yields afterwards"},
+};
+
+constexpr Choice kPreconditioners[] = {
+    {"none", "nothing"},
+    {"mass", "one over the mass of each node"},
+};
+
+void describe_implicit(Fields& fields, ImplicitSettings& implicit) {
+  fields.choice("mode", implicit.mode, kTangentModeChoices, "how sand answers within the solve");
+  fields.choice("preconditioner", implicit.preconditioner, kPreconditioners,
+                "what stands in for the inverse of the tangent");
+  fields.number("tolerance", implicit.tolerance,
+                {.meaning = "what may be left of the residual, over the larger of outer and inner impulses",
+                 .low = 0.0,
+                 .high = 0.1,
+                 .low_open = true});
+  fields.integer("newton_iterations", implicit.newton_iterations,
+                 {.meaning = "at most; a step that needs more is made shorter", .low = 1.0, .high = 1000.0});
+  fields.integer("krylov_iterations", implicit.krylov_iterations,
+                 {.meaning = "at most, of one linear solve", .low = 1.0, .high = 1.0e6});
+  fields.integer("directions", implicit.directions,
+                 {.meaning = "that the solver of mode exact keeps; two vectors of nodes each",
+                  .low = 1.0,
+                  .high = 1000.0});
+  bool given = false;
+  fields.object("unilateral", given, false, "where the energy of mode unilateral lets tension go",
+                [&](Fields& f) {
+                  f.number("begin", implicit.unilateral.begin,
+                           {.meaning = "strain, tr(eps)/sqrt(3), below which all of the stress acts"});
+                  f.number("width", implicit.unilateral.width,
+                           {.meaning = "strain over which the stress fades", .low = 0.0, .low_open = true});
+                  f.number("bend", implicit.unilateral.bend,
+                           {.meaning = "how much sooner it fades under shear", .low = 0.0});
+                });
+}
+
 void describe_time(Fields& fields, TimeDescription& time) {
+  fields.choice("integrator", time.integrator, kIntegrators, "how a step is made");
   fields.integer("frames", time.frames, {.meaning = "frames to simulate", .low = 1.0, .high = 1.0e9});
   fields.number("frames_per_second", time.frames_per_second,
                 {.unit = "1/s", .meaning = "frames in a second of the scene", .low = 0.0, .low_open = true});
@@ -311,6 +359,8 @@ void describe(Fields& fields, Scene& scene) {
   fields.object("grid", given, true, "the lattice", [&](Fields& f) { describe_grid(f, scene.grid); });
   fields.object("time", given, false, "frames and time steps",
                 [&](Fields& f) { describe_time(f, scene.time); });
+  fields.object("implicit", given, false, "how implicit steps are solved for (time.integrator)",
+                [&](Fields& f) { describe_implicit(f, scene.implicit); });
   describe_materials(fields, scene);
   describe_bodies(fields, scene);
   turn_gravity(scene);

@@ -43,7 +43,14 @@ struct GridDescription {
   std::array<PeriodicAxis, 3> periodic;
 };
 
+/// How a step is made.
+enum class Integrator {
+  kExplicit,  ///< symplectic: short steps, each cheap
+  kImplicit,  ///< backward Euler: long steps, each solved for
+};
+
 struct TimeDescription {
+  Integrator integrator = Integrator::kExplicit;
   std::int64_t frames = 48;
   double frames_per_second = 24.0;
   std::vector<std::vector<double>>
@@ -129,6 +136,7 @@ struct Scene {
   std::vector<MaterialDescription> materials;
   std::vector<BodyDescription> bodies;
   Effects effects;
+  ImplicitSettings implicit;  ///< where steps are implicit
   OutputDescription output;
   CameraDescription camera;
 

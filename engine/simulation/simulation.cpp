@@ -33,6 +33,21 @@ std::string describe_offender(const Offender& offender, const StepReport& report
   return text;
 }
 
+std::string describe_unsolved(const StepReport& report) {
+  const NewtonReport& newton = report.implicit->newton;
+  constexpr const char* kWhy[] = {"", "it needs more than implicit.newton_iterations",
+                                  "no step along its direction lowers the residual",
+                                  "the linear solver gave up", "the residual has no value where it starts"};
+  char text[512];
+  std::snprintf(
+      text, sizeof text,
+      "no velocities solve a step, even one of %.3g s: %s (%d iterations, residual %.3g of %.3g asked); a "
+      "smaller time.max_step, a larger implicit.tolerance or grid.precision double may help",
+      report.dt, kWhy[static_cast<int>(newton.end)], newton.iterations, newton.last,
+      report.implicit->tolerance);
+  return text;
+}
+
 template <class Real>
 class SimulationOf final : public Simulation {
  public:
@@ -132,6 +147,7 @@ class SimulationOf final : public Simulation {
       offender_ = report.offender;
       if (report.error) return *report.error;
       if (report.accepted) return report;
+      if (!report.offender) return Error{ErrorKind::kPhysics, describe_unsolved(report), scene_.name};
       return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
     });
   }
@@ -174,6 +190,10 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     if (!tried) return tried.error();
     const StepReport& report = *tried;
     frame.redone += report.redone;
+    if (report.implicit) {
+      frame.newton_iterations += report.implicit->newton.iterations;
+      frame.linear_iterations += report.implicit->newton.linear_iterations;
+    }
     // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
     const bool last = report.dt >= remaining * (1.0 - 1e-9);
     counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;

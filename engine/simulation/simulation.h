@@ -32,11 +32,12 @@ struct FrameReport {
   double time = 0.0;       ///< s
   bool resumed = false;    ///< it was begun before: what it took until then is in none of the figures below
   std::int64_t steps = 0;
-  double least_dt = 0.0, largest_dt = 0.0;  ///< s
-  std::array<std::int64_t, 6> limits{};     ///< steps bound by each Limit
-  std::int64_t redone = 0;                  ///< halvings
-  double seconds = 0.0;                     ///< wall time
-  Profile profile;                          ///< wall time per phase
+  double least_dt = 0.0, largest_dt = 0.0;                    ///< s
+  std::array<std::int64_t, 6> limits{};                       ///< steps bound by each Limit
+  std::int64_t redone = 0;                                    ///< halvings
+  std::int64_t newton_iterations = 0, linear_iterations = 0;  ///< of implicit steps that were made
+  double seconds = 0.0;                                       ///< wall time
+  Profile profile;                                            ///< wall time per phase
 };
 
 /// Called after each step; false stops the frame at once, with the state as it is.

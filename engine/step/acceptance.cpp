@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/step/chunks.h"
 #include "engine/step/stepper.h"
 #include "engine/step/transfer_stages.h"
 
@@ -91,7 +92,7 @@ std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::si
   const Lattice<Real> lattice = make_lattice(state, plan_.transfer);
   const auto kernel = plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gather;
   std::optional<Offender> offender;
-  for_each_chunk(state, owner, owner, dt, [&](std::size_t, Chunk<Real>& chunk) {
+  for_each_chunk(state, owner, owner, dt, scratch(), [&](std::size_t, Chunk<Real>& chunk) {
     if (offender) return;
     GatherInput<Real> in{};
     in.particles = chunk.particles;

@@ -51,6 +51,8 @@ Result<void> StepPlan<Real>::validate(const State<Real>& state) const {
     }
   }
   if (auto result = follow_all(nodes, on_nodes); !result) return result;
+  if (auto result = follow_all(contacts, on_nodes); !result) return result;
+  if (auto result = follow_all(holds, on_nodes); !result) return result;
   for (std::size_t k = 0; k < gather.size(); ++k) {
     std::set<std::string> known = with_channels(on_nodes, k);
     if (auto result = follow_all(gather[k], known); !result) return result;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/step/chunks.h"
 #include "engine/step/transfer_stages.h"
 
 namespace repose {
@@ -21,6 +22,7 @@ template <class Real>
 Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
     : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {
   if (plan_.rest) rest_.emplace(*plan_.rest);
+  if (plan_.implicit) implicit_.emplace(plan_, threads_, scratch_);
 }
 
 template <class Real>
@@ -47,6 +49,10 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     scatter(state, dt);
     for (const auto& pass : plan_.prepare) pass.run(state, dt);
     update_nodes(state, dt);
+    if (implicit_ && !solve(state, dt, report)) {
+      report.offender.reset();
+      continue;
+    }
     if (rest_) wake(state, dt);
     report.offender = inspect(state, dt);
     if (report.offender) continue;
@@ -152,7 +158,7 @@ void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::si
   if (keeps_velocity) std::memset(mine.before_arena.data(), 0, kArenaValues * sizeof(Real));
   std::uint64_t rows = 0;
   std::size_t runs = 0;
-  for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
+  for_each_chunk(state, owner, next, dt, scratch(), [&](std::size_t k, Chunk<Real>& chunk) {
     REPOSE_VALIDATE(within_reach(chunk.particles, plan_.transfer.nodes()));
     for (const auto& pass : plan_.scatter[k]) pass.run(chunk);
     rows |= chunk.rows;
@@ -179,8 +185,28 @@ void Stepper<Real>::update_nodes(State<Real>& state, Real dt) {
   for_each_block(state, [&](std::size_t block) {
     NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
     for (const auto& pass : plan_.nodes) pass.run(nodes);
-    plan_.kernels->bound(nodes.nodes, bounds_[block]);
+    if (!implicit_) hold_block(nodes);
   });
+}
+
+/// What holds a block's nodes, and how fast they are then. Explicit steps do it while the nodes are in cache.
+template <class Real>
+void Stepper<Real>::hold_block(NodeBlock<Real>& nodes) {
+  for (const auto& pass : plan_.holds) pass.run(nodes);
+  plan_.kernels->bound(nodes.nodes, bounds_[nodes.block]);
+}
+
+/// Solves for the nodes' velocities, then holds them. Returns whether a solution was found.
+template <class Real>
+bool Stepper<Real>::solve(State<Real>& state, Real dt, StepReport& report) {
+  const PhaseTimer timer(profile_, Phase::kSolve);
+  report.implicit = implicit_->solve(state, dt);
+  if (report.implicit->newton.end != NewtonEnd::kConverged) return false;
+  for_each_block(state, [&](std::size_t block) {
+    NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
+    hold_block(nodes);
+  });
+  return true;
 }
 
 /// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside
@@ -243,7 +269,7 @@ Motion<Real> Stepper<Real>::gather_block(State<Real>& state, std::size_t owner, 
   std::array<double, 3> sums{};
   double samples = 0.0;
   const std::size_t next = std::min(owner + 1, state.grid.owners().size() - 1);
-  for_each_chunk(state, owner, next, dt, [&](std::size_t k, Chunk<Real>& chunk) {
+  for_each_chunk(state, owner, next, dt, scratch(), [&](std::size_t k, Chunk<Real>& chunk) {
     chunk.two_velocities = two_velocities;
     chunk.motion = motion;
     for (const auto& pass : plan_.gather[k]) pass.run(chunk);
@@ -291,9 +317,10 @@ void Stepper<Real>::finish(State<Real>& state, Real dt) {
 
 template <class Real>
 std::size_t Stepper<Real>::bytes() const {
-  return order_.bytes() + (rest_ ? rest_->bytes() : 0) + bounds_.capacity() * sizeof(VelocityBounds<Real>) +
-         motion_.capacity() * sizeof(Motion<Real>) + runs_.capacity() * sizeof(std::size_t) +
-         suspects_.capacity() * sizeof(std::int32_t) + found_.capacity() * sizeof(std::optional<Offender>);
+  return order_.bytes() + (rest_ ? rest_->bytes() : 0) + (implicit_ ? implicit_->bytes() : 0) +
+         bounds_.capacity() * sizeof(VelocityBounds<Real>) + motion_.capacity() * sizeof(Motion<Real>) +
+         runs_.capacity() * sizeof(std::size_t) + suspects_.capacity() * sizeof(std::int32_t) +
+         found_.capacity() * sizeof(std::optional<Offender>);
 }
 
 template <class Real>

@@ -11,6 +11,7 @@
 #include "engine/base/profile.h"
 #include "engine/state/block_order.h"
 #include "engine/state/state.h"
+#include "engine/step/implicit_step.h"
 #include "engine/step/step_plan.h"
 #include "engine/step/time_step.h"
 
@@ -32,9 +33,10 @@ struct StepReport {
   bool accepted = false;
   double dt = 0.0;  ///< s; of the step made, or of the last one refused
   Limit limit = Limit::kMaxStep;
-  int redone = 0;                    ///< how often it was refused
-  std::optional<Offender> offender;  ///< of the last refusal
-  std::optional<Error> error;        ///< an event could not be carried out; no step was then tried
+  int redone = 0;                          ///< how often it was refused
+  std::optional<Offender> offender;        ///< of the last refusal
+  std::optional<Error> error;              ///< an event could not be carried out; no step was then tried
+  std::optional<ImplicitReport> implicit;  ///< of the last try, where steps are implicit
 };
 
 template <class Real>
@@ -69,6 +71,8 @@ class Stepper {
   void scatter(State<Real>& state, Real dt);
   void scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt);
   void update_nodes(State<Real>& state, Real dt);
+  void hold_block(NodeBlock<Real>& nodes);
+  bool solve(State<Real>& state, Real dt, StepReport& report);
   std::optional<Offender> inspect(State<Real>& state, Real dt);
   std::optional<Offender> inspect_block(State<Real>& state, std::size_t owner, Real dt);
   std::span<const std::int32_t> scattering(const State<Real>& state, int colour) const;
@@ -88,15 +92,13 @@ class Stepper {
   Offender fastest(const State<Real>& state) const;
   void finish(State<Real>& state, Real dt);
   Scratch<Real>& scratch() { return scratch_[static_cast<std::size_t>(Threads::index())]; }
-  template <class Visit>
-  void for_each_chunk(State<Real>& state, std::size_t owner, std::size_t next, Real dt, Visit visit);
-
   StepPlan<Real> plan_;
   Threads threads_;
   BlockOrder<Real> order_;
   std::optional<Rest<Real>> rest_;          // where blocks may sleep
   std::vector<Stir> stirs_, margin_stirs_;  // per owner; per owner of the margin
   std::vector<Scratch<Real>> scratch_;
+  std::optional<ImplicitStep<Real>> implicit_;
   std::vector<VelocityBounds<Real>> bounds_;    // per block
   std::vector<Motion<Real>> motion_;            // per owner
   std::vector<std::size_t> runs_;               // per owner
@@ -105,32 +107,5 @@ class Stepper {
   bool topology_known_ = false;                 // to the passes that follow it
   Profile profile_;
 };
-
-/// Calls visit(set, chunk) for the particles of an owner; `next` is the owner whose turn it is then.
-template <class Real>
-template <class Visit>
-void Stepper<Real>::for_each_chunk(State<Real>& state, std::size_t owner, std::size_t next, Real dt,
-                                   Visit visit) {
-  const Index3 block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
-  const Vec3 origin = state.world(block, {0.0, 0.0, 0.0});
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    ParticleSet<Real>& set = state.sets[k];
-    const std::size_t end = set.begin[owner + 1];
-    for (std::size_t first = set.begin[owner]; first < end; first += kChunk) {
-      Chunk<Real> chunk{set,
-                        first,
-                        set.span(first, std::min(kChunk, end - first)),
-                        scratch(),
-                        dt,
-                        state.spacing,
-                        state.counters.time,
-                        origin};
-      const std::size_t after = end - first > kChunk ? first + kChunk : set.begin[next];
-      chunk.owner = owner;
-      chunk.particles.ahead = static_cast<std::ptrdiff_t>(after) - static_cast<std::ptrdiff_t>(first);
-      visit(k, chunk);
-    }
-  }
-}
 
 }  // namespace repose

@@ -44,9 +44,9 @@ template <class Real>
 ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>& lattice) {
   const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].scatter;
   const auto kept_stretching = static_cast<Real>(plan.transfer.kept_stretching);
-  const bool keeps_velocity = plan.transfer.figures().keeps_velocity;
-  PassDescription description{
-      "scatter", "", {"position", "velocity", "stress"}, {"node mass", "node momentum"}};
+  const bool keeps_velocity = plan.transfer.figures().keeps_velocity, implicit = plan.implicit.has_value();
+  PassDescription description{"scatter", "", {"position", "velocity"}, {"node mass", "node momentum"}};
+  if (!implicit) description.reads.push_back("stress");
   if (plan.transfer.keeps_affine()) description.reads.push_back("affine");
   if (keeps_velocity) description.writes.push_back("node momentum before forces");
   return {description, [=](Chunk<Real>& chunk) {
@@ -56,7 +56,9 @@ ParticlePass<Real> scatter_pass(const StepPlan<Real>& plan, const Lattice<Real>&
               in.stress[k] = chunk.scratch.stress.data() + static_cast<std::size_t>(k) * kChunk;
             }
             in.mass = static_cast<Real>(chunk.set.particle_mass);
-            in.impulse_volume = static_cast<Real>(static_cast<double>(chunk.dt) * chunk.set.particle_volume);
+            in.impulse_volume =
+                implicit ? Real(0)
+                         : static_cast<Real>(static_cast<double>(chunk.dt) * chunk.set.particle_volume);
             in.kept_stretching = kept_stretching;
             in.lattice = lattice;
             chunk.runs += kernel(in, chunk.scratch.arena.data(), chunk.rows);
@@ -193,6 +195,14 @@ NodePass<Real> before_forces_pass(const StepPlan<Real>& plan) {
           }};
 }
 
+template <class Real>
+NodePass<Real> begin_pass() {
+  return {{"velocity at the begin", "", {"node velocity"}, {"node velocity before forces"}},
+          [](NodeBlock<Real>& block) {
+            std::copy_n(block.nodes, kBlockValues, block.state.before_forces.block(block.block));
+          }};
+}
+
 #define REPOSE_INSTANTIATE(Real)                                                         \
   template Lattice<Real> make_lattice(const State<Real>&, const TransferChoice&);        \
   template ParticlePass<Real> stress_pass(const MaterialRuntime<Real>&);                 \
@@ -205,6 +215,7 @@ NodePass<Real> before_forces_pass(const StepPlan<Real>& plan) {
   template ParticlePass<Real> project_shaped_pass(const MaterialRuntime<Real>&);         \
   template NodePass<Real> normalize_pass(const StepPlan<Real>&);                         \
   template OrderPass<Real> before_forces_room_pass();                                    \
+  template NodePass<Real> begin_pass();                                                  \
   template NodePass<Real> before_forces_pass(const StepPlan<Real>&);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

@@ -53,4 +53,8 @@ OrderPass<Real> before_forces_room_pass();
 template <class Real>
 NodePass<Real> before_forces_pass(const StepPlan<Real>& plan);
 
+/// For implicit steps: the same velocity, kept from the nodes before any force acts.
+template <class Real>
+NodePass<Real> begin_pass();
+
 }  // namespace repose

@@ -218,8 +218,9 @@ struct Kernels {
                       Real* trace_of_trial, std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);
 
-  /// matrix <- S = tau (I + dt grad v)^-T, by rows.
-  void (*turn)(const Real* const stress[6], const Real* const gradient[9], Real dt, Real* const matrix[9],
+  /// matrix <- S = tau (I + dt grad v)^-T, by rows. False where a particle would be turned inside out or nearly
+  /// so.
+  bool (*turn)(const Real* const stress[6], const Real* const gradient[9], Real dt, Real* const matrix[9],
                std::size_t count);
   /// matrix <- the change of S with a change `gradient` of dt grad v.
   void (*apply_tangent)(const Real* tangent, const Real* const gradient[9], Real* const matrix[9],

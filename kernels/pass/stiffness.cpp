@@ -22,6 +22,9 @@ namespace repose {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// A particle that a step would flatten to this share of its volume has no stress that could be trusted.
+constexpr double kLeastDeterminant = 0.01;
+
 template <class N>
 REPOSE_INLINE Mat3<N> inverse(const Mat3<N>& a) {
   const auto minor = [&](int r0, int c0, int r1, int c1) {
@@ -54,24 +57,25 @@ REPOSE_INLINE void store_mat3(const Mat3<Pack<T>>& a, T* const to[9], std::size_
   for (int k = 0; k < 9; ++k) a.m[k / 3][k % 3].store_first(to[k] + first, lanes);
 }
 
-/// (I + dt grad v)^-1
+/// I + dt grad v
 template <class T>
-REPOSE_INLINE Mat3<Pack<T>> load_inverse(const T* const gradient[9], T dt, std::size_t first,
-                                         std::size_t lanes) {
+REPOSE_INLINE Mat3<Pack<T>> load_map(const T* const gradient[9], T dt, std::size_t first, std::size_t lanes) {
   Mat3<Pack<T>> step = load_mat3<T>(gradient, first, lanes);
   HWY_UNROLL(9)
   for (int k = 0; k < 9; ++k) {
     step.m[k / 3][k % 3] = fma(Pack<T>(dt), step.m[k / 3][k % 3], Pack<T>(T(k % 4 == 0 ? 1 : 0)));
   }
-  return inverse(step);
+  return step;
 }
 
-/// matrix <- tau (I + dt grad v)^-T
+/// matrix <- tau (I + dt grad v)^-T; whether no det(I + dt grad v) is nearly zero or less.
 template <class T>
-void turn(const T* const stress[6], const T* const gradient[9], T dt, T* const matrix[9], std::size_t count) {
+bool turn(const T* const stress[6], const T* const gradient[9], T dt, T* const matrix[9], std::size_t count) {
   static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  bool upright = true;
   for (const auto [first, lanes] : packs<T>(count)) {
-    const Mat3<Pack<T>> back = load_inverse<T>(gradient, dt, first, lanes);
+    const Mat3<Pack<T>> map = load_map<T>(gradient, dt, first, lanes), back = inverse(map);
+    upright = upright && !any(!(determinant(map) > Pack<T>(T(kLeastDeterminant))));
     Pack<T> tau[6];
     HWY_UNROLL(6)
     for (int k = 0; k < 6; ++k) tau[k] = Pack<T>::load_first(stress[k] + first, lanes);
@@ -86,6 +90,7 @@ void turn(const T* const stress[6], const T* const gradient[9], T dt, T* const m
     }
     store_mat3(s, matrix, first, lanes);
   }
+  return upright;
 }
 
 /// Where the numbers of the particles from `first` on stand: packs of any width find theirs in groups of 16.
@@ -150,7 +155,7 @@ void linearize(const TangentInput<T>& in) {
                                     number(in.surface.dilatancy, T(0))};
       response = returned_response<mode == TangentMode::kExact>(constants.elastic, axes.value, surface);
     }
-    const auto back = load_inverse<T>(in.material.gradient, in.material.dt, first, lanes);
+    const auto back = inverse(load_map<T>(in.material.gradient, in.material.dt, first, lanes));
     store_tangent(axes, back, response, tangent_at(in.tangent, first));
   }
 }

@@ -1,0 +1,41 @@
+#include "engine/step/block_sweep.h"
+
+#include "engine/step/transfer_stages.h"
+
+namespace repose {
+
+template <class Real>
+void BlockSweep<Real>::begin(State<Real>& state, Real dt) {
+  state_ = &state;
+  dt_ = dt;
+  lattice_ = make_lattice(state, plan_.transfer);
+}
+
+template <class Real>
+void BlockSweep<Real>::gather_gradient(Chunk<Real>& chunk) const {
+  GatherInput<Real> in{};
+  in.particles = chunk.particles;
+  in.lattice = lattice_;
+  for (std::size_t k = 0; k < kAffineComponents; ++k) {
+    in.gradient[k] = chunk.scratch.gradient.data() + k * kChunk;
+    chunk.moving_gradient[k] = in.gradient[k];
+  }
+  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gradient(in,
+                                                                                    chunk.scratch.arena.data());
+}
+
+template <class Real>
+void BlockSweep<Real>::push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const {
+  PushInput<Real> in{};
+  in.particles = chunk.particles;
+  in.scale = static_cast<Real>(scale);
+  in.lattice = lattice_;
+  for (std::size_t k = 0; k < kAffineComponents; ++k) in.matrix[k] = own.matrix.data() + k * kChunk;
+  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].push(in, own.arena.data(),
+                                                                                chunk.rows);
+}
+
+template class BlockSweep<float>;
+template class BlockSweep<double>;
+
+}  // namespace repose

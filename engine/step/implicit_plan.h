@@ -1,0 +1,70 @@
+// Repose: what a plan says of implicit steps: how sand answers within them, what holds nodes, and when a
+// solution is good enough.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "engine/step/pass.h"
+
+namespace repose {
+
+/// What stands in for the inverse of the tangent in the norm of the linear solves.
+enum class Preconditioner {
+  kNone,
+  kMass,   ///< 1 / m of each node
+  kBlock,  ///< the inverse of each node's own 3x3 block
+};
+
+/// Whether a step is solved for, and by which means.
+struct ImplicitSettings {
+  TangentMode mode = TangentMode::kExact;
+  Preconditioner preconditioner = Preconditioner::kMass;
+  double tolerance = 1e-3;  ///< of the residual, over the larger of outer and inner impulses of the step
+  std::int64_t newton_iterations = 40;
+  std::int64_t krylov_iterations = 2000;  ///< in one Newton iteration
+  std::int64_t directions = 40;           ///< that the solver of the exact mode keeps
+  bool histories = false;                 ///< whether reports hold the residual of each iteration
+  UnilateralConstants<double> unilateral{-3e-3, 3e-3, 1e-2};
+};
+
+/// What keeps one node from moving freely.
+template <class Real>
+struct Hold {
+  enum class Kind {
+    kAll,      ///< v = velocity
+    kAlong,    ///< v . normal = bound
+    kAgainst,  ///< v . normal >= bound
+  };
+  int node = 0;  ///< of its block
+  Kind kind = Kind::kAll;
+  Real normal[3] = {};
+  Real bound = 0;         ///< m/s
+  Real velocity[3] = {};  ///< m/s
+};
+
+/// Lists what may hold the nodes of a block in this step, whether or not it does yet.
+template <class Real>
+struct HoldPass {
+  PassDescription description;
+  std::function<void(const NodeBlock<Real>&, std::vector<Hold<Real>>&)> run;
+};
+
+/// How a set answers: its material's kernels, and the passes that put the numbers by which its particles yield
+/// into Scratch::yield, from the trial strain; the return map comes after them.
+template <class Real>
+struct SetResponse {
+  MaterialKernels<Real> kernels;
+  std::shared_ptr<const void> constants;
+  bool shaped = false;  ///< whether particles yield by numbers of their own
+  std::vector<ParticlePass<Real>> surface;
+};
+
+template <class Real>
+struct ImplicitPlan {
+  ImplicitSettings settings;
+  std::vector<SetResponse<Real>> sets;
+};
+
+}  // namespace repose

@@ -1,0 +1,291 @@
+#include "engine/step/implicit_step.h"
+
+#include <atomic>
+#include <cmath>
+
+namespace repose {
+namespace {
+
+template <class Real>
+double square(const Real* v) {
+  double sum = 0.0;
+  for (int axis = 1; axis < kNodeValues; ++axis)
+    sum += static_cast<double>(v[axis]) * static_cast<double>(v[axis]);
+  return sum;
+}
+
+template <class Real>
+YieldInput<Real> yield_surface(const SetResponse<Real>& response, Scratch<Real>& scratch) {
+  if (!response.shaped) return {};
+  auto& yield = scratch.yield;
+  return {yield.cone.data(),    yield.cohesion.data(), yield.dilatancy.data(),
+          yield.plastic.data(), yield.sheared.data(),  yield.dilated.data()};
+}
+
+}  // namespace
+
+template <class Real>
+ImplicitStep<Real>::ImplicitStep(const StepPlan<Real>& plan, Threads& threads,
+                                 std::vector<Scratch<Real>>& scratch)
+    : plan_(plan),
+      implicit_(*plan.implicit),
+      returns_(plan.implicit->settings.mode == TangentMode::kExact ||
+               plan.implicit->settings.mode == TangentMode::kProjected),
+      unilateral_{static_cast<Real>(plan.implicit->settings.unilateral.begin),
+                  static_cast<Real>(plan.implicit->settings.unilateral.width),
+                  static_cast<Real>(plan.implicit->settings.unilateral.bend)},
+      sweep_(plan, threads, scratch),
+      system_(sweep_, contacts_, plan.implicit->settings.preconditioner) {}
+
+/// Vectors of the blocks as they now lie.
+template <class Real>
+void ImplicitStep<Real>::follow_topology() {
+  orders_ = sweep_.state().counters.orders;
+  system_.follow_topology();
+  for (Vector* vector : {&v_, &step_, &trial_, &residual_, &right_}) *vector = system_.vector();
+  inner_.assign(sweep_.state().grid.size(), 0.0);
+  symmetric_.reset();
+  general_.reset();
+}
+
+template <class Real>
+ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
+  sweep_.begin(state, dt);
+  if (orders_ != state.counters.orders) follow_topology();
+  collect_holds();
+
+  system_.copy(state.before_forces, v_);
+  sweep_.for_each_block([&](std::size_t b) {
+    Real* const v = v_.block(b);
+    for (std::size_t node = 0; node < kBlockNodes; ++node) v[node * kNodeValues] = Real(0);
+    contacts_.take_up(b, v);
+  });
+  obey_contacts(v_);
+
+  ImplicitReport report;
+  const auto& settings = implicit_.settings;
+  NewtonStop stop;
+  stop.iterations = static_cast<int>(settings.newton_iterations);
+  if (evaluate(v_)) {
+    stop.scale = mass_norm_of_forces();
+    report.tolerance = stop.tolerance = settings.tolerance * stop.scale;
+  }
+  report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
+  linear_ = SolveStatus::kConverged;
+  report.newton = newton(*this, v_, step_, trial_, stop);
+  report.linear = linear_;
+  publish(v_);
+  return report;
+}
+
+template <class Real>
+void ImplicitStep<Real>::collect_holds() {
+  State<Real>& state = sweep_.state();
+  contacts_.clear(state.grid.size());
+  if (plan_.contacts.empty()) return;
+  sweep_.for_each_block([&](std::size_t b) {
+    const NodeBlock<Real> block{state, b, state.nodes.block(b), sweep_.dt(), state.counters.time};
+    std::vector<Hold<Real>> holds;
+    for (const auto& pass : plan_.contacts) pass.run(block, holds);
+    contacts_.set_block(b, holds);
+  });
+}
+
+/// The trial strain of a chunk, in work; and where particles yield by numbers of their own, those.
+template <class Real>
+MaterialInput<Real> ImplicitStep<Real>::try_strain(std::size_t set, Chunk<Real>& chunk,
+                                                   ImplicitScratch<Real>& own) const {
+  const SetResponse<Real>& response = implicit_.sets[set];
+  sweep_.gather_gradient(chunk);
+  MaterialInput<Real> in{};
+  in.constants = response.constants.get();
+  in.dt = sweep_.dt();
+  in.count = chunk.particles.count;
+  for (std::size_t k = 0; k < kStrainComponents; ++k) {
+    in.strain[k] = own.strain.data() + k * kChunk;
+    std::copy_n(chunk.particles.strain[k], in.count, in.strain[k]);
+    chunk.particles.strain[k] = in.strain[k];
+    in.stress[k] = chunk.scratch.stress.data() + k * kChunk;
+  }
+  std::copy_n(chunk.moving_gradient, kAffineComponents, in.gradient);
+  response.kernels.trial(in);
+  if (returns_ && response.shaped) {
+    for (const auto& pass : response.surface) pass.run(chunk);
+  }
+  return in;
+}
+
+/// S of a chunk, in own.matrix; false where a particle would be turned inside out.
+template <class Real>
+bool ImplicitStep<Real>::stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const {
+  const SetResponse<Real>& response = implicit_.sets[set];
+  const MaterialInput<Real> in = try_strain(set, chunk, own);
+  if (returns_ && response.shaped) {
+    response.kernels.project_shaped(in, yield_surface(response, chunk.scratch));
+  } else if (returns_ && response.kernels.project != nullptr) {
+    response.kernels.project(in);
+  }
+  const bool fades =
+      implicit_.settings.mode == TangentMode::kUnilateral && response.kernels.fading_stress != nullptr;
+  fades ? response.kernels.fading_stress(in, unilateral_) : response.kernels.stress(in);
+  Real* matrix[kAffineComponents];
+  for (std::size_t k = 0; k < kAffineComponents; ++k) matrix[k] = own.matrix.data() + k * kChunk;
+  return sweep_.kernels().turn(in.stress, in.gradient, sweep_.dt(), matrix, in.count);
+}
+
+/// |r(v)| in the norm of the inverse mass, with r in residual_.
+template <class Real>
+std::optional<double> ImplicitStep<Real>::evaluate(const Vector& v) {
+  std::atomic<bool> sound = true;
+  sweep_.over_particles(v, residual_, [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+    if (!stress(k, chunk, own)) sound.store(false, std::memory_order_relaxed);
+    sweep_.push(chunk, own, static_cast<double>(sweep_.dt()) * chunk.set.particle_volume);
+  });
+  if (!sound) return std::nullopt;
+  const double sum = sweep_.sum_of_blocks([&](std::size_t b) {
+    Real* const r = residual_.block(b);
+    finish_residual(b, v.block(b), r);
+    const Real* const nodes = sweep_.state().nodes.block(b);
+    double part = 0.0;
+    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+      if (nodes[at] > Real(0)) part += square(r + at) / static_cast<double>(nodes[at]);
+    }
+    return part;
+  });
+  return std::isfinite(sum) ? std::optional<double>(std::sqrt(sum)) : std::nullopt;
+}
+
+/// dt f -> r = m (v - v^free) - dt f, less what contacts bear.
+template <class Real>
+void ImplicitStep<Real>::finish_residual(std::size_t block, const Real* v, Real* r) {
+  const Real* const nodes = sweep_.state().nodes.block(block);
+  Real impulse[kBlockValues];
+  std::copy_n(r, kBlockValues, impulse);
+  contacts_.project(block, impulse);
+  double inner = 0.0;
+  for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+    if (nodes[at] > Real(0)) inner += square(impulse + at) / static_cast<double>(nodes[at]);
+  }
+  inner_[block] = inner;
+  for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+    const Real mass = nodes[at];
+    r[at] = Real(0);
+    for (std::size_t c = 1; c < kNodeValues; ++c) {
+      r[at + c] = mass > Real(0) ? mass * (v[at + c] - nodes[at + c]) - r[at + c] : Real(0);
+    }
+  }
+  contacts_.remember(block, r);
+  contacts_.project(block, r);
+}
+
+/// The larger of the outer and the inner impulses of the step, in the norm of the inverse mass; after
+/// evaluate().
+template <class Real>
+double ImplicitStep<Real>::mass_norm_of_forces() {
+  double inner = 0.0;
+  for (const double part : inner_) inner += part;
+  const double outer = sweep_.sum_of_blocks([&](std::size_t b) {
+    const Real* const nodes = sweep_.state().nodes.block(b);
+    const Real* const begin = sweep_.state().before_forces.block(b);
+    Real change[kBlockValues];
+    for (std::size_t k = 0; k < kBlockValues; ++k) change[k] = nodes[k] - begin[k];
+    contacts_.project(b, change);
+    double part = 0.0;
+    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+      if (nodes[at] > Real(0)) part += square(change + at) * static_cast<double>(nodes[at]);
+    }
+    return part;
+  });
+  return std::sqrt(std::max(inner, outer));
+}
+
+template <class Real>
+void ImplicitStep<Real>::linearize(const Vector& v) {
+  const auto mode = static_cast<std::size_t>(implicit_.settings.mode);
+  sweep_.over_particles(v, right_, [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+    const MaterialInput<Real> in = try_strain(k, chunk, own);
+    const SetResponse<Real>& response = implicit_.sets[k];
+    response.kernels.linearize[mode](
+        {in, yield_surface(response, chunk.scratch), unilateral_, system_.tangent(k, chunk)});
+  });
+}
+
+template <class Real>
+typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve(double share, Vector& step) {
+  sweep_.for_each_block([&](std::size_t b) {
+    std::memset(step.block(b), 0, kBlockValues * sizeof(Real));
+    const Real* const r = residual_.block(b);
+    Real* const right = right_.block(b);
+    for (std::size_t k = 0; k < kBlockValues; ++k) right[k] = -r[k];
+  });
+  const auto& settings = implicit_.settings;
+  const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), settings.histories};
+  SolveReport report;
+  if (settings.mode == TangentMode::kExact) {
+    if (!general_) general_.emplace(system_, static_cast<int>(settings.directions));
+    report = general_->solve(system_, right_, step, stop);
+  } else {
+    if (!symmetric_) symmetric_.emplace(system_);
+    report = symmetric_->solve(system_, right_, step, stop);
+  }
+  if (!report.converged()) linear_ = report.status;
+  const bool best_so_far = report.status == SolveStatus::kCapped || report.status == SolveStatus::kStagnated;
+  return {report.iterations, report.converged() || best_so_far};
+}
+
+template <class Real>
+void ImplicitStep<Real>::take(const Vector& v, double length, const Vector& step, Vector& to) {
+  const Real scale = static_cast<Real>(length);
+  sweep_.for_each_block([&](std::size_t b) {
+    const Real *const from = v.block(b), *const along = step.block(b);
+    Real* const out = to.block(b);
+    for (std::size_t k = 0; k < kBlockValues; ++k) out[k] = from[k] + scale * along[k];
+  });
+}
+
+template <class Real>
+void ImplicitStep<Real>::obey_contacts(Vector& v) {
+  sweep_.for_each_block([&](std::size_t b) { contacts_.obey(b, v.block(b)); });
+}
+
+template <class Real>
+bool ImplicitStep<Real>::change_contacts(Vector& v) {
+  const double changes = sweep_.sum_of_blocks([&](std::size_t b) {
+    if (!contacts_.any(b)) return 0.0;
+    const int freed = contacts_.let_go(b);
+    return static_cast<double>(freed + contacts_.take_up(b, v.block(b)));
+  });
+  if (changes == 0.0) return false;
+  obey_contacts(v);
+  return true;
+}
+
+/// Writes the velocities to the nodes.
+template <class Real>
+void ImplicitStep<Real>::publish(Vector& v) {
+  sweep_.for_each_block([&](std::size_t b) {
+    Real* const nodes = sweep_.state().nodes.block(b);
+    const Real* const from = v.block(b);
+    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+      if (!(nodes[at] > Real(0))) continue;
+      for (std::size_t c = 1; c < kNodeValues; ++c) nodes[at + c] = from[at + c];
+    }
+    contacts_.for_each_reaction(b, [&](int node, const Real* reaction) {
+      Real* const at = nodes + node * kNodeValues;
+      if (!(at[0] > Real(0))) return;
+      for (int c = 0; c < 3; ++c) at[1 + c] -= reaction[c] / at[0];
+    });
+  });
+}
+
+template <class Real>
+std::size_t ImplicitStep<Real>::bytes() const {
+  std::size_t vectors = 5 + (symmetric_ ? 7 : 0);
+  if (general_) vectors += 2 * static_cast<std::size_t>(implicit_.settings.directions) + 5;
+  return vectors * v_.bytes() + system_.bytes();
+}
+
+template class ImplicitStep<float>;
+template class ImplicitStep<double>;
+
+}  // namespace repose

@@ -1,0 +1,94 @@
+// Repose: a symmetric system solved by whatever it takes. The rungs, each for where the one before breaks down:
+//   1  conjugate residual
+//   2  the same once more from where it stopped: enough if the breakdown was rounding
+//   3  the minimal residual method, which does not break down
+//   4  A + delta M for A, delta growing tenfold: for a singular A. A Newton direction still, of a stiffer
+//   problem.
+// What none of them solves is reported, and x is as it was: the step is to be redone with a shorter dt.
+// Iterations used up and residuals down at rounding end the ladder at once: no lower rung does better, and x is
+// the best so far.
+#pragma once
+
+#include "engine/step/conjugate_residual.h"
+#include "engine/step/minimal_residual.h"
+
+namespace repose {
+
+/// A linear system whose `apply` can be told to add delta M x, M symmetric and positive definite.
+template <class System>
+concept ShiftableSystem = LinearSystem<System> && requires(System& system, double delta) {
+  system.shift(delta);
+};
+
+/// The shifts to try: `first`, then ten times as much, `count` in all. In units of the system's M.
+struct Shifts {
+  double first = 0.1;
+  int count = 5;
+};
+
+/// Keeps eight vectors between solves, and seven more once a system has broken conjugate residual down.
+template <ShiftableSystem System>
+class LinearSolve {
+ public:
+  using Vector = typename System::Vector;
+
+  explicit LinearSolve(const System& system, const Shifts& shifts = {})
+      : shifts_(shifts), conjugate_(system), start_(system.vector()) {}
+
+  /// Solves A x = b from the x that is given. Each rung may use all of `stop.iterations`; the report has their
+  /// sum.
+  SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
+    system.copy(x, start_);
+    SolveReport report = conjugate_.solve(system, b, x, stop);
+    Stop same = stop;  // the tolerance is relative to the start of the first rung
+    same.absolute = std::max(stop.absolute, stop.relative * report.initial_norm);
+    same.relative = 0.0;
+
+    if (report.status == SolveStatus::kBrokeDown) {
+      follow(report, SolveRung::kRestarted, conjugate_.solve(system, b, x, same));
+    }
+    if (report.status == SolveStatus::kBrokeDown) {
+      if (!minimal_) minimal_.emplace(system);
+      follow(report, SolveRung::kMinimalResidual, minimal_->solve(system, b, x, same));
+    }
+    if (report.status == SolveStatus::kBrokeDown || report.status == SolveStatus::kSingular) {
+      solve_shifted(system, b, x, same, report);
+    }
+    if (report.status == SolveStatus::kNotFinite) system.copy(start_, x);
+    return report;
+  }
+
+ private:
+  static void follow(SolveReport& report, SolveRung rung, SolveReport next) {
+    report.status = next.status;
+    report.rung = rung;
+    report.iterations += next.iterations;
+    report.final_norm = next.final_norm;
+    report.history.insert(report.history.end(), next.history.begin(), next.history.end());
+  }
+
+  /// From the start again: what a singular A has made of x may be far off.
+  void solve_shifted(System& system, const Vector& b, Vector& x, const Stop& stop, SolveReport& report) {
+    report.shift = shifts_.first;
+    for (int k = 0; k < shifts_.count; ++k, report.shift *= 10.0) {
+      system.copy(start_, x);
+      system.shift(report.shift);
+      follow(report, SolveRung::kShifted, conjugate_.solve(system, b, x, stop));
+      if (report.converged() || report.status == SolveStatus::kNotFinite) break;
+    }
+    system.shift(0.0);
+    if (report.converged()) return;
+    system.copy(start_, x);
+    if (report.status == SolveStatus::kNotFinite) return;
+    report.status = SolveStatus::kBrokeDown;
+    report.final_norm = report.initial_norm;
+    report.shift = 0.0;
+  }
+
+  Shifts shifts_;
+  ConjugateResidual<System> conjugate_;
+  std::optional<MinimalResidual<System>> minimal_;
+  Vector start_;
+};
+
+}  // namespace repose
