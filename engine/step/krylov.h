@@ -7,7 +7,6 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -105,12 +104,12 @@ class ResidualWatch {
     ++unchecked_;
     norm_ = rr < 0.0 ? 0.0 : std::sqrt(rr);
     if (stop_.history) report_.history.push_back(norm_);
-    if (!std::isfinite(norm_)) status_ = SolveStatus::kNotFinite;
+    if (!std::isfinite(norm_)) end(SolveStatus::kNotFinite);
   }
 
   /// Whether r must be computed anew for `correct`.
   bool doubts() const {
-    if (unchecked_ == 0 || status_ == SolveStatus::kNotFinite) return false;
+    if (unchecked_ == 0 || (ended_ && status_ == SolveStatus::kNotFinite)) return false;
     return ended() || norm_ <= tolerance_ || norm_ <= epsilon_ * true_norm_ || unchecked_ >= period_ ||
            report_.iterations >= stop_.iterations;
   }
@@ -121,15 +120,15 @@ class ResidualWatch {
     // Most of the residual is rounding, and it has not even halved since it was last known.
     const bool stagnates = claimed < 0.5 * norm_ && norm_ > 0.5 * true_norm_;
     if (rr < 0.0) {
-      status_ = SolveStatus::kBrokeDown;
+      end(SolveStatus::kBrokeDown);
     } else if (!std::isfinite(norm_)) {
-      status_ = SolveStatus::kNotFinite;
+      end(SolveStatus::kNotFinite);
     } else if (norm_ <= tolerance_) {
-      status_ = SolveStatus::kConverged;
+      end(SolveStatus::kConverged);
     } else if (!ended() && stagnates) {
-      status_ = SolveStatus::kStagnated;
+      end(SolveStatus::kStagnated);
     } else if (!ended() && report_.iterations >= stop_.iterations) {
-      status_ = SolveStatus::kCapped;
+      end(SolveStatus::kCapped);
     }
     if (stop_.history) report_.history.back() = norm_;
     true_norm_ = norm_;
@@ -140,9 +139,9 @@ class ResidualWatch {
   bool vanishes(double length) {
     scale_ = std::max(scale_, length / norm_);
     if (!std::isfinite(length)) {
-      status_ = SolveStatus::kNotFinite;
+      end(SolveStatus::kNotFinite);
     } else if (length <= kRounding * epsilon_ * scale_ * norm_) {
-      status_ = SolveStatus::kSingular;
+      end(SolveStatus::kSingular);
     }
     return ended();
   }
@@ -151,21 +150,21 @@ class ResidualWatch {
   /// which equals z^T w, then q^T P q and w^T P w.
   bool dead_end(double zq, double qq, double ww) {
     if (!std::isfinite(zq) || !std::isfinite(qq) || !std::isfinite(ww)) {
-      status_ = SolveStatus::kNotFinite;
+      end(SolveStatus::kNotFinite);
     } else if (qq < 0.0 || ww < 0.0) {
-      status_ = SolveStatus::kBrokeDown;
+      end(SolveStatus::kBrokeDown);
     } else if (!vanishes(std::sqrt(ww))) {
       const bool same = qq == 0.0 || std::abs(zq) <= kRounding * epsilon_ * norm_ * std::sqrt(ww);
-      if (same) status_ = SolveStatus::kBrokeDown;
+      if (same) end(SolveStatus::kBrokeDown);
     }
     return ended();
   }
 
-  bool ended() const { return status_.has_value(); }
+  bool ended() const { return ended_; }
   double norm() const { return norm_; }
 
   SolveReport report() {
-    report_.status = status_.value_or(SolveStatus::kBrokeDown);
+    report_.status = status_;
     report_.final_norm = norm_;
     return std::move(report_);
   }
@@ -173,11 +172,17 @@ class ResidualWatch {
  private:
   static constexpr double kRounding = 64.0;  // ulps that count as zero
 
+  void end(SolveStatus status) {
+    status_ = status;
+    ended_ = true;
+  }
+
   Stop stop_;
   double epsilon_;
   int period_;
   SolveReport report_;
-  std::optional<SolveStatus> status_;
+  SolveStatus status_ = SolveStatus::kBrokeDown;
+  bool ended_ = false;
   double tolerance_ = 0.0;
   double norm_ = 0.0;  // by recurrence, if unchecked_
   double true_norm_ = std::numeric_limits<double>::infinity();

@@ -9,6 +9,8 @@
 // the best so far.
 #pragma once
 
+#include <optional>
+
 #include "engine/step/conjugate_residual.h"
 #include "engine/step/minimal_residual.h"
 

@@ -4,12 +4,11 @@
 // linearisation is worth.
 //
 // A problem has
-//   Vector vector() const                                        zero
-//   std::optional<double> evaluate(const Vector& v)              |r(v)|; nothing where r is not defined
-//   bool change_contacts(Vector& v)                              one-sided constraints taken up or let go; v
-//   obeys void linearize(const Vector& v) SolveReport solve(double tolerance, Vector& step)            step =
-//   -A^-1 r(v), |A step + r| <= tolerance void take(const Vector& v, double length, const Vector& step, Vector&
-//   to)    to = v + length step
+//   std::optional<double> evaluate(const Vector& v)    |r(v)|; nothing where r is not defined
+//   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
+//   void linearize(const Vector& v)
+//   solve(double share, Vector& step)                  step = -A^-1 r(v), |A step + r| <= share |r|
+//   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step
 #pragma once
 
 #include <algorithm>
@@ -64,7 +63,7 @@ NewtonReport newton(Problem& problem, typename Problem::Vector& v, typename Prob
 
     problem.linearize(v);
     const double eta = std::min(0.1, std::sqrt(*norm / stop.scale));
-    const auto solved = problem.solve(std::max(eta * *norm, 0.3 * stop.tolerance), step);
+    const auto solved = problem.solve(std::max(eta, 0.3 * stop.tolerance / *norm), step);
     report.linear_iterations += solved.iterations;
     if (!solved.usable()) return report.end = NewtonEnd::kUnsolved, report;
 
