@@ -83,11 +83,16 @@ TEST(SleepUnderAnEmitter, OnlyTheBedBeneath_Wakes) {
   std::size_t still = 0, stirred = 0;
   for (std::size_t p = 0; p < before.size(); ++p) {
     ASSERT_EQ(after.id[p], before.id[p]);
-    const bool same = after.position[p] == before.position[p] && after.velocity[p] == before.velocity[p];
+    // A new order may count a particle from another block's origin, which rounds its place.
+    bool same = after.velocity[p] == before.velocity[p];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      same = same &&
+             std::abs(after.position[p][axis] - before.position[p][axis]) <= 1.001 * std::ldexp(kSide, -22);
+    }
     still += same && before.position[p][0] > 0.7 ? 1 : 0;
     stirred += same ? 0 : 1;
   }
-  EXPECT_EQ(still, there) << "not a bit of the other pit has changed";
+  EXPECT_EQ(still, there) << "nothing in the other pit has moved";
   EXPECT_GT(stirred, 1000u);
 }
 
