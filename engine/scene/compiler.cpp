@@ -59,6 +59,9 @@ Surroundings surroundings_of(const Scene& scene, const CompileOptions& options) 
   around.folder = scene.folder;
   around.allow_outside_paths = options.allow_outside_paths;
   around.places = scene.places;
+  for (const BodyDescription& body : scene.bodies) {
+    around.bodies.push_back(set_description(scene, body.name, material_index(scene, body.material)));
+  }
   return around;
 }
 
