@@ -53,8 +53,9 @@ Disturbance<Real> disturbance(const Solid& solid) {
             [solid](const State<Real>& state, const Index3& block, double from, double to) {
               if (solid.sequence->fastest(from, to) == 0.0) return false;
               const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
-              const double radius = block_reach(state.spacing);
-              return solid.at(from).distance(x) <= radius || solid.at(to).distance(x) <= radius;
+              const double side = solid.hollow ? -1.0 : 1.0, radius = block_reach(state.spacing);
+              return side * solid.sequence->at(from)->signed_distance(x) <= radius ||
+                     side * solid.sequence->at(to)->signed_distance(x) <= radius;
             }};
   }
   return {"solid " + solid.name,
