@@ -13,6 +13,7 @@ namespace repose {
 using Effects = std::tuple<Gravity, Colliders>;
 }  // namespace repose
 #else
+#include "engine/effect/age.h"
 #include "engine/effect/cohesion.h"
 #include "engine/effect/dilatancy.h"
 #include "engine/effect/emitter.h"
@@ -40,6 +41,7 @@ using Effects = std::tuple<Emitters,          // particles that begin
                            Sleep,             // blocks at rest take no part
                            Prestress,         // bodies begin under their weight
                            Manufactured,      // bodies that move as a formula says
+                           Age,               // when particles began
                            VolumeCorrection,  // around the return map, and around all that follows here
                            Hardening,         // cone <- that of the shear so far
                            Cohesion,          // cohesion, and tension after the return

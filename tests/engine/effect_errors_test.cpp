@@ -67,5 +67,17 @@ TEST(Manufactured, KeysThatNoMotionFits_AreRefused) {
   EXPECT_NE(of(R"({"ball": {"type": "bar_mode", "speed": 1}})").find("missing"), std::string::npos);
 }
 
+TEST(Age, AttributeWithoutItsKey_IsRefused) {
+  const auto of = [](const char* more) {
+    return errors(with("\"colliders\"", more + std::string(", \"colliders\"")));
+  };
+  EXPECT_EQ(of(R"("output": {"attributes": ["age"]}, "age": {})"), "");
+  EXPECT_EQ(of(R"("output": {"attributes": ["speed"]})"), "");
+  EXPECT_EQ(of(R"("output": {"attributes": ["speed", "age"]})"),
+            "s.json:9:28: output.attributes: \"age\" needs particles that remember when they began: add "
+            "\"age\": {} to "
+            "the scene");
+}
+
 }  // namespace
 }  // namespace repose
