@@ -1,10 +1,11 @@
 // Repose: trial strain, return map and stress of every material. A new one needs the overloads below: where its
-// elastic constants are, the work of its stress, and, if it yields, the reference of its return map and the
-// work of it.
+// elastic constants are, the work of its stress, and, if it yields, the references of its return maps and the
+// work of them.
 #include <memory>
 
 #include "bench/kernel_case.h"
 #include "kernels/reference/material.h"
+#include "kernels/reference/yield.h"
 
 namespace repose {
 namespace {
@@ -15,6 +16,14 @@ void reference_project(const DruckerPragerConstants<Real>&, const MaterialInput<
 }
 Work project_work(const DruckerPragerParameters&) {
   return project_drucker_prager_work();
+}
+template <class Real>
+void reference_project_shaped(const DruckerPragerConstants<Real>&, const MaterialInput<Real>& in,
+                              const YieldInput<Real>& surface) {
+  reference::project_shaped_drucker_prager(in, surface);
+}
+Work project_shaped_work(const DruckerPragerParameters&) {
+  return project_shaped_drucker_prager_work();
 }
 template <class Real>
 const HenckyConstants<Real>& elastic_part(const DruckerPragerConstants<Real>& constants) {
@@ -60,6 +69,12 @@ void add_material(const Parameters& parameters, const MaterialKernels<Real>& ker
         {"project" + of, 0, kChunk, project_work(parameters),
          [=](Workpiece<Real>& piece) { kernel.project(piece.material(constants.get())); },
          [=](Workpiece<Real>& piece) { reference_project(*constants, piece.material(constants.get())); }});
+    cases.push_back(
+        {"project_shaped" + of, 0, kChunk, project_shaped_work(parameters),
+         [=](Workpiece<Real>& piece) { kernel.project_shaped(piece.material(nullptr), piece.surface()); },
+         [=](Workpiece<Real>& piece) {
+           reference_project_shaped(*constants, piece.material(nullptr), piece.surface());
+         }});
   }
   cases.push_back(
       {"stress" + of, 0, kChunk, stress_work<Real>(parameters),

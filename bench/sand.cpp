@@ -119,6 +119,11 @@ MaterialInput<Real> Workpiece<Real>::material(const void* constants) const {
 }
 
 template <class Real>
+YieldInput<Real> Workpiece<Real>::surface() const {
+  return {near[22], near[23], near[24], near[25], near[26], near[27]};
+}
+
+template <class Real>
 std::vector<std::span<Real>> Workpiece<Real>::arrays() const {
   std::vector<std::span<Real>> all;
   for (Real* one : channel) all.emplace_back(one, kChunk);
@@ -158,9 +163,11 @@ Chunk<Real>::Chunk(std::size_t stencil)
     std::copy_n(sand.channel[k].data() + kChunk, kChunk, piece_.channel[k]);
   }
   for (std::size_t k = 0; k < Workpiece<Real>::kNear; ++k) {
-    const double most = k < 6 ? 500.0 : k < 12 ? 1.0 : k < 21 ? 10.0 : 2e-3;
+    const double most = k < 6 ? 500.0 : k < 12 ? 1.0 : k < 21 ? 10.0 : k < 22 ? 2e-3 : k < 23 ? 2.0 : 0.2;
+    // Cones, cohesions and dilatancies are not negative; cohesions are strains.
+    const double scale = k == 23 ? 1e-3 : 1.0;
     piece_.near[k] = near_.data() + k * kChunk;
-    fill_channel(piece_.near[k], kChunk, random, -most, most);
+    fill_channel(piece_.near[k], kChunk, random, k < 22 ? -most : 0.0, scale * most);
   }
   piece_.arena = arena_.data();
   piece_.nodes = nodes_.data();

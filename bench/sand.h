@@ -26,7 +26,8 @@ struct SandNumbers {
 template <class Real>
 struct Workpiece {
   static constexpr int kChannels = 22;  ///< position, velocity, affine, strain, volume gained
-  static constexpr int kNear = 22;      ///< stress, moving velocity, velocity before forces, gradient, trace
+  /// Stress, moving velocity, velocity before forces, gradient, trace; yield surface and what yielding did.
+  static constexpr int kNear = 28;
 
   Real* channel[kChannels];  ///< kChunk numbers each
   Real* near[kNear];         ///< the same
@@ -45,10 +46,13 @@ struct Workpiece {
   Real* const* before() const { return near + 9; }
   Real* const* gradient() const { return near + 12; }
   Real* trace() const { return near[21]; }
+  Real* cone() const { return near[22]; }
+  Real* cohesion() const { return near[23]; }
 
   ParticleSpan<Real> particles() const;
   Lattice<Real> lattice(std::size_t stencil) const;
   MaterialInput<Real> material(const void* constants) const;
+  YieldInput<Real> surface() const;
   /// Everything that a kernel may write but `result`.
   std::vector<std::span<Real>> arrays() const;
 };

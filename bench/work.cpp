@@ -161,6 +161,34 @@ Work project_drucker_prager_work() {
   return {.read = 6, .written = 6, .flops = 32};
 }
 
+/// Trace and mean 3, deviator 3, its norm 13; dg 7; trace and apex left 3; norm kept 2; what was lost 9;
+/// product and mean 10.
+Work project_shaped_drucker_prager_work() {
+  return {.read = 6, .written = 6, .near_read = 3, .near_written = 3, .flops = 50};
+}
+/// Reduction of exp 6 and its series; the angle 5; sine: square, series, its end 3; slope over sine 2 and their
+/// products 2.
+template <class Real>
+Work harden_work() {
+  const double exponential = sizeof(Real) == 4 ? 12 : 24, sine = sizeof(Real) == 4 ? 10 : 18;
+  return {.read = 1, .near_written = 1, .flops = 6 + exponential + 6 + 5 + 1 + sine + 3 + 4};
+}
+template Work harden_work<float>();
+template Work harden_work<double>();
+/// Trace and mean 3, deviator 3, its norm 13; what exceeds the cone 3; g 2, b 4, root 6; both forms of dg 7;
+/// the new cone 3.
+Work quicken_work() {
+  return {.read = 6, .near_read = 2, .near_written = 1, .flops = 44};
+}
+/// The test 18; scaling 7 and back 3; 41 a rotation, three a sweep; the bound 7; composed again 48; traces 4.
+template <class Real>
+Work cut_tension_work() {
+  const double sweeps = sizeof(Real) == 4 ? 5 : 6;
+  return {.read = 6, .written = 6, .near_read = 1, .near_written = 1, .flops = 87 + 3 * 41 * sweeps};
+}
+template Work cut_tension_work<float>();
+template Work cut_tension_work<double>();
+
 /// x 6, v^2 6, |grad v|^2 18. Moving velocity and gradient are in scratch.
 Work advance_work() {
   return {.read = 6, .written = 3, .near_read = 12, .flops = 30};

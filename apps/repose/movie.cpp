@@ -176,8 +176,8 @@ int movie_command(const MovieArguments& arguments) {
   }
   const Camera camera = choose_camera(shoot->scene, seen, material, arguments);
   const double extent = 12.0 * (camera.eye - camera.target).norm();
-  const bool any_moves = std::any_of(shoot->solids.begin(), shoot->solids.end(),
-                                     [](const Solid& solid) { return solid.motion != nullptr; });
+  const bool any_moves =
+      std::any_of(shoot->solids.begin(), shoot->solids.end(), [](const Solid& solid) { return solid.moves(); });
   auto solids = draw_solids(shoot->scene, shoot->solids, extent);
   const std::string path =
       arguments.out.empty() ? arguments.folder + "/" + shoot->scene.name + ".mp4" : arguments.out;

@@ -33,6 +33,38 @@ void describe(Fields& fields, Collider& collider) {
   fields.choice("appearance", collider.appearance, kAppearances, "how pictures show it");
   fields.object("motion", collider.motion.given, false, "how it moves; it rests where this is left out",
                 [&](Fields& motion) { describe(motion, collider.motion); });
+  fields.object("frames", collider.frames.given, false,
+                "the mesh deforms: one file per frame; \"shape.file\" has \"#\" where the number stands",
+                [&](Fields& frames) { describe(frames, collider.frames); });
+  if (!collider.frames.given) return;
+  fields.check(collider.shape.type == ShapeDescription::Type::kMesh, "frames",
+               "needs a shape of type \"mesh\"");
+  fields.check(!frame_file(collider.shape.file, collider.frames.first).empty(), "frames",
+               "needs a \"shape.file\" with one row of \"#\", such as \"plough.####.obj\" for plough.0001.obj");
+  fields.check(!collider.motion.given, "frames",
+               "have no \"motion\" beside them; let the files hold all of it");
+}
+
+/// What a rigid or a deforming solid reaches while it moves.
+template <class Real>
+Disturbance<Real> disturbance(const Solid& solid) {
+  if (solid.sequence != nullptr) {
+    return {"solid " + solid.name,
+            [solid](const State<Real>& state, const Index3& block, double from, double to) {
+              if (solid.sequence->fastest(from, to) == 0.0) return false;
+              const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
+              const double side = solid.hollow ? -1.0 : 1.0, radius = block_reach(state.spacing);
+              return side * solid.sequence->at(from)->signed_distance(x) <= radius ||
+                     side * solid.sequence->at(to)->signed_distance(x) <= radius;
+            }};
+  }
+  return {"solid " + solid.name,
+          [solid](const State<Real>& state, const Index3& block, double from, double to) {
+            const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
+            const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
+            const double radius = block_reach(state.spacing);
+            return before != after && std::min(solid.distance(before), solid.distance(after)) <= radius;
+          }};
 }
 
 }  // namespace
@@ -64,19 +96,15 @@ void Colliders::add_to_nodes(Assembly<Real>& assembly) const {
   plan.order.push_back({{"nodes near solids", "colliders", {"topology"}, {"contacts"}},
                         [tables](State<Real>& state) { tables->follow_topology(state); }});
   if (tables->any_moves()) {
-    plan.prepare.push_back({{"poses of solids", "colliders.motion", {"contacts"}, {"contacts"}},
+    const bool any_rigid = std::any_of(assembly.solids.begin(), assembly.solids.end(),
+                                       [](const Solid& solid) { return solid.motion != nullptr; });
+    const char* const key = any_rigid ? "colliders.motion" : "colliders.frames";
+    plan.prepare.push_back({{"poses of solids", key, {"contacts"}, {"contacts"}},
                             [tables](State<Real>& state, Real dt) { tables->prepare(state, dt); }});
     plan.speeds.push_back([tables](double from, double to) { return tables->fastest(from, to); });
   }
   for (const Solid& solid : assembly.solids) {
-    if (solid.motion == nullptr) continue;
-    plan.disturbances.push_back(
-        {"solid " + solid.name, [solid](const State<Real>& state, const Index3& block, double from, double to) {
-           const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
-           const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
-           const double radius = block_reach(state.spacing);
-           return before != after && std::min(solid.distance(before), solid.distance(after)) <= radius;
-         }});
+    if (solid.moves()) plan.disturbances.push_back(disturbance<Real>(solid));
   }
   if (plan.implicit) {
     plan.contacts.push_back({{"contacts of solids", "colliders", {"contacts"}, {}},

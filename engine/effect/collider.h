@@ -8,6 +8,7 @@
 
 #include "engine/base/params.h"
 #include "engine/effect/effect.h"
+#include "engine/geometry/mesh_sequence.h"
 
 namespace repose {
 
@@ -27,6 +28,7 @@ struct Collider {
   double friction = 0.0;  ///< Coulomb's coefficient mu_b, no unit
   Appearance appearance = Appearance::kAuto;
   MotionDescription motion;
+  SequenceDescription frames;  ///< of a mesh that deforms
 };
 
 /// All colliders of a scene, as one effect: a node may be near several.

@@ -15,34 +15,6 @@ bool has_friction(const Solid& solid) {
   return solid.friction > 0.0 && solid.contact != Contact::kSticky;
 }
 
-Vec3 corner(const Bounds& bounds, int k) {
-  return {k & 1 ? bounds.upper[0] : bounds.lower[0], k & 2 ? bounds.upper[1] : bounds.lower[1],
-          k & 4 ? bounds.upper[2] : bounds.lower[2]};
-}
-
-double farthest(const Bounds& bounds, const Vec3& from) {
-  double most = 0.0;
-  for (int k = 0; k < 8; ++k) most = std::max(most, (corner(bounds, k) - from).norm());
-  return most;
-}
-
-/// How far a point of the bounds may be moved from one pose to another, as the body sees it. The distance is a
-/// convex function of the point, so it is largest at a corner.
-double drift(const Bounds& bounds, const Placement& from, const Placement& to) {
-  double most = 0.0;
-  for (int k = 0; k < 8; ++k) {
-    most = std::max(most, (from.own(corner(bounds, k)) - to.own(corner(bounds, k))).norm());
-  }
-  return most;
-}
-
-/// Material of plane strain lies in the plane through the origin; the single node across it stands for that
-/// plane wherever it is.
-Vec3 in_plane(Vec3 x, int flat_axis) {
-  if (flat_axis >= 0) x[flat_axis] = 0.0;
-  return x;
-}
-
 }  // namespace
 
 template <class Real>
@@ -71,12 +43,7 @@ ContactTables<Real>::ContactTables(std::vector<Solid> solids, std::shared_ptr<Co
     : solids_(std::move(solids)), log_(std::move(log)) {
   friction_ = std::any_of(solids_.begin(), solids_.end(), has_friction);
   for (std::size_t k = 0; k < solids_.size(); ++k) {
-    if (solids_[k].motion == nullptr) continue;
-    const Bounds body = solids_[k].shape->bounds();
-    const bool finite = body.lower.allFinite() && body.upper.allFinite();
-    const double radius =
-        finite ? farthest(body, solids_[k].motion->pivot()) : std::numeric_limits<double>::infinity();
-    moving_.push_back({k, radius, {}, {}, {}, false});
+    if (solids_[k].moves()) moving_.emplace_back(solids_[k], k);
   }
 }
 
@@ -93,7 +60,7 @@ typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const Sta
   const int flat = state.topology.flat_axis;
   NearSolids near;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
-    if (solids_[k].motion != nullptr) continue;
+    if (solids_[k].moves()) continue;
     if (solids_[k].distance(in_plane(state.world(block, {1.5, 1.5, 1.5}), flat)) > reach(state)) continue;
     Near entry{k, {}};
     for (int node = 0; node < kBlockNodes; ++node) {
@@ -122,9 +89,7 @@ void ContactTables<Real>::follow_topology(State<Real>& state) {
   }
   if (any_moves()) {
     find_bounds(state);
-    for (Moving& moving : moving_) {
-      moving.listed = solids_[moving.solid].motion->pose(state.counters.time);
-    }
+    for (MovingSolid& moving : moving_) moving.list_at(state.counters.time, kMarginCells * spacing_);
     list_moving(state);
   }
   share_out(state);
@@ -147,7 +112,7 @@ void ContactTables<Real>::list_moving(const State<Real>& state) {
   for (const Index3& block : state.grid.blocks()) {
     const Vec3 middle = in_plane(state.world(block, {1.5, 1.5, 1.5}), flat_axis_);
     for (std::uint32_t k = 0; k < moving_.size(); ++k) {
-      if (solids_[moving_[k].solid].distance(moving_[k].listed.own(middle)) <= far) listed_.push_back(k);
+      if (moving_[k].listed_distance(middle) <= far) listed_.push_back(k);
     }
     listed_begin_.push_back(static_cast<std::uint32_t>(listed_.size()));
   }
@@ -162,7 +127,7 @@ bool ContactTables<Real>::rubs(std::size_t block) const {
   }
   if (!any_moves()) return false;
   for (std::size_t i = listed_begin_[block]; i < listed_begin_[block + 1]; ++i) {
-    if (has_friction(solids_[moving_[listed_[i]].solid])) return true;
+    if (has_friction(solids_[moving_[listed_[i]].index()])) return true;
   }
   return false;
 }
@@ -188,16 +153,12 @@ template <class Real>
 void ContactTables<Real>::prepare(State<Real>& state, Real dt) {
   const double time = state.counters.time;
   bool used_up = false;
-  for (Moving& moving : moving_) {
-    const RigidMotion& motion = *solids_[moving.solid].motion;
-    moving.begin = motion.pose(time);
-    moving.end = motion.pose(time + static_cast<double>(dt));
-    moving.still =
-        moving.begin.rotation == moving.end.rotation && moving.begin.translation == moving.end.translation;
-    used_up = used_up || drift(bounds_, moving.listed, moving.end) > kMarginCells * state.spacing;
+  for (MovingSolid& moving : moving_) {
+    const bool gone = moving.prepare(time, static_cast<double>(dt), bounds_, kMarginCells * state.spacing);
+    used_up = used_up || gone;
   }
   if (!used_up) return;
-  for (Moving& moving : moving_) moving.listed = moving.end;
+  for (MovingSolid& moving : moving_) moving.list_at_end();
   list_moving(state);
   share_out(state);
 }
@@ -205,12 +166,7 @@ void ContactTables<Real>::prepare(State<Real>& state, Real dt) {
 template <class Real>
 double ContactTables<Real>::fastest(double from, double to) const {
   double most = 0.0;
-  for (const Moving& moving : moving_) {
-    const RigidMotion& motion = *solids_[moving.solid].motion;
-    const Vec3 pivot = motion.pose(from).point(motion.pivot());
-    const double radius = std::min(moving.radius, farthest(bounds_, pivot));
-    most = std::max(most, motion.fastest(from, to, radius));
-  }
+  for (const MovingSolid& moving : moving_) most = std::max(most, moving.fastest(from, to, bounds_));
   return most;
 }
 
@@ -228,41 +184,20 @@ std::size_t ContactTables<Real>::find_touches(const NodeBlock<Real>& block, Touc
   if (!any_moves()) return count;
   const State<Real>& state = block.state;
   for (std::size_t i = listed_begin_[block.block]; i < listed_begin_[block.block + 1]; ++i) {
-    const Moving& moving = moving_[listed_[i]];
+    const MovingSolid& moving = moving_[listed_[i]];
     const Vec3 middle = in_plane(state.world(state.grid.blocks()[block.block], {1.5, 1.5, 1.5}), flat_axis_);
-    if (solids_[moving.solid].distance(moving.end.own(middle)) > reach(state)) continue;
-    add({moving.solid, nullptr, &moving});
+    if (moving.distance(middle) > reach(state)) continue;
+    add({moving.index(), nullptr, &moving});
   }
   std::sort(touches, touches + count, [](const Touch& a, const Touch& b) { return a.solid < b.solid; });
   return count;
 }
 
-/// A node beside a solid that moves; `wall` becomes the velocity that keeps a point of the solid at its place
-/// in the body over the whole step, (x(t + dt) - x(t))/dt. It is affine in x, so what sticks is carried without
-/// drift, where the velocity of the moment would let it spiral outwards by (w dt)^2/2 a step.
 template <class Real>
-NodeContact<Real> ContactTables<Real>::meet(const Moving& moving, const Vec3& x, double dt, const Real* v,
-                                            Real* wall) const {
-  const Solid& solid = solids_[moving.solid];
-  const Vec3 own = moving.end.own(x);
-  const double distance = solid.distance(own) - kNodeReach * spacing_;  // when the step ends
-  const Vec3 speed =
-      moving.still ? Vec3(0, 0, 0) : in_plane((moving.end.point(moving.begin.own(x)) - x) / dt, flat_axis_);
-  for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(speed[axis]);
-  const bool separating = solid.contact == Contact::kSeparating;
-  const double path = separating ? dt * std::sqrt(static_cast<double>(dot(v, v))) : 0.0;
-  if (distance > path) return {std::numeric_limits<Real>::max(), {Real(0), Real(0), Real(0)}};
-  const Vec3 normal = in_plane(moving.end.direction(solid.normal(own, 0.25 * spacing_)), flat_axis_);
-  // A separating node moves on from where the solid stands when the step begins.
-  NodeContact<Real> contact{static_cast<Real>(separating ? distance + dt * normal.dot(speed) : distance), {}};
-  for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);
-  return contact;
-}
-
-template <class Real>
-template <bool kAnyMoves, class Record>
+template <typename ContactTables<Real>::Beside kBeside, class Record>
 void ContactTables<Real>::collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x,
                                        Real dt, Real* v, Real* rubbed, Record record) const {
+  constexpr bool kAnyMoves = kBeside != Beside::kResting;
   Real impulse[kMost] = {};  // |v-bar - v*| per solid: the impulse over the mass
   NodeContact<Real> met[kAnyMoves ? kMost : 1];
   Real walls[kAnyMoves ? kMost : 1][3];
@@ -272,7 +207,15 @@ void ContactTables<Real>::collide_node(const Touch* touches, std::size_t count, 
   };
   const auto wall = [&](std::size_t k) -> const Real* { return moves(k) ? walls[k] : nullptr; };
   for (std::size_t k = 0; k < count; ++k) {
-    if (moves(k)) met[k] = meet(*touches[k].moving, x, static_cast<double>(dt), v, walls[k]);
+    if (moves(k)) {
+      const MovingSolid& solid = *touches[k].moving;
+      const auto step = static_cast<double>(dt);
+      if (kBeside == Beside::kDeforming && solid.deforms()) {
+        met[k] = solid.meet<true>(x, step, spacing_, flat_axis_, v, walls[k]);
+      } else {
+        met[k] = solid.meet<false>(x, step, spacing_, flat_axis_, v, walls[k]);
+      }
+    }
     record.before(v);
     impulse[k] = constrain(solids_[touches[k].solid].contact, contact(k), wall(k), dt, v);
     record.after(touches[k].solid, wall(k), v);
@@ -314,25 +257,31 @@ Vec3 ContactTables<Real>::place_of(const NodeBlock<Real>& block, std::size_t nod
 template <class Real>
 bool ContactTables<Real>::collide_block(NodeBlock<Real>& block, const Touch* touches, std::size_t count,
                                         Real* rubbed) const {
-  const auto place = [&](std::size_t node) { return place_of(block, node); };
+  Beside beside = Beside::kResting;
+  for (const Touch* touch = touches; touch != touches + count; ++touch) {
+    if (touch->moving != nullptr)
+      beside = std::max(beside, touch->moving->deforms() ? Beside::kDeforming : Beside::kRigid);
+  }
+  const auto act = [&]<Beside kBeside>(auto record) {
+    return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
+      const Vec3 x = kBeside == Beside::kResting ? Vec3() : place_of(block, node);
+      collide_node<kBeside>(touches, count, node, x, block.dt, at + 1, after + 1, record(at, x));
+    });
+  };
   if (log_ != nullptr) {
     ContactSums* const row = log_->row(block.block);
     std::fill_n(row, log_->solids(), ContactSums());
-    return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
-      const Vec3 x = place(node);
-      collide_node<true>(touches, count, node, x, block.dt, at + 1, after + 1,
-                         Recorder{row, static_cast<double>(at[0]), x});
-    });
+    const auto record = [row](const Real* at, const Vec3& x) {
+      return Recorder{row, static_cast<double>(at[0]), x};
+    };
+    return beside == Beside::kDeforming ? act.template operator()<Beside::kDeforming>(record)
+                                        : act.template operator()<Beside::kRigid>(record);
   }
   if (count == 0) return false;
-  if (std::any_of(touches, touches + count, [](const Touch& touch) { return touch.moving != nullptr; })) {
-    return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
-      collide_node<true>(touches, count, node, place(node), block.dt, at + 1, after + 1, NoRecord{});
-    });
-  }
-  return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
-    collide_node<false>(touches, count, node, Vec3(), block.dt, at + 1, after + 1, NoRecord{});
-  });
+  const auto record = [](const Real*, const Vec3&) { return NoRecord{}; };
+  if (beside == Beside::kDeforming) return act.template operator()<Beside::kDeforming>(record);
+  if (beside == Beside::kRigid) return act.template operator()<Beside::kRigid>(record);
+  return act.template operator()<Beside::kResting>(record);
 }
 
 template <class Real>
@@ -363,9 +312,13 @@ void ContactTables<Real>::list(const NodeBlock<Real>& block, std::vector<Hold<Re
     for (std::size_t k = 0; k < count; ++k) {
       Real wall[3] = {};
       const Touch& touch = touches[k];
-      const NodeContact<Real> at = touch.moving == nullptr ? touch.nodes[node]
-                                                           : meet(*touch.moving, place_of(block, node),
-                                                                  static_cast<double>(block.dt), fast, wall);
+      const auto meet = [&](auto deforms) {
+        return touch.moving->template meet<deforms.value>(place_of(block, node), static_cast<double>(block.dt),
+                                                          spacing_, flat_axis_, fast, wall);
+      };
+      const NodeContact<Real> at = touch.moving == nullptr   ? touch.nodes[node]
+                                   : touch.moving->deforms() ? meet(std::true_type())
+                                                             : meet(std::false_type());
       const Contact contact = solids_[touch.solid].contact;
       const bool against = contact == Contact::kSeparating;
       if (!(at.distance < (against ? static_cast<Real>(spacing_) : Real(0)))) continue;

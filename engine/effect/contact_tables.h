@@ -9,17 +9,11 @@
 #include <memory>
 #include <vector>
 
-#include "engine/effect/contact_law.h"
 #include "engine/effect/contact_log.h"
+#include "engine/effect/moving_solid.h"
 #include "engine/step/step_plan.h"
 
 namespace repose {
-
-/// A node counts as touched as soon as the half cell around it reaches the solid. With the bare sign of its own
-/// distance the first constrained node lies up to a cell inside, and a particle drifts farther, to where its
-/// stencil has left the free nodes: 1.5 cells deep with the quadratic one, two with the cubic. So the wall is
-/// met half a cell early at most, and passed by one (one and a half) at most.
-inline constexpr double kNodeReach = 0.5;  // cells
 
 template <class Real>
 class ContactTables {
@@ -47,20 +41,17 @@ class ContactTables {
   };
   using NearSolids = std::vector<Near>;
 
-  struct Moving {
-    std::size_t solid;
-    double radius;                 // of its surface about the pivot, m; infinite for planes
-    Placement listed, begin, end;  // when the list was made; at the ends of the step
-    bool still = false;            // begin is end
-  };
-
   /// A solid that is near a block in this step.
   struct Touch {
     std::size_t solid;
     const NodeContact<Real>* nodes;  // null where it moves
-    const Moving* moving;
+    const MovingSolid* moving;       // null where it rests
   };
   static constexpr std::size_t kMost = 16;
+
+  /// The most that any solid near a block does. The laws are compiled for each, so that none costs more than it
+  /// must.
+  enum class Beside { kResting, kRigid, kDeforming };
 
   /// Why a node's record is a type: where nothing is recorded it must not cost.
   struct NoRecord;
@@ -74,8 +65,7 @@ class ContactTables {
   bool rubs(std::size_t block) const;
   Vec3 place_of(const NodeBlock<Real>& block, std::size_t node) const;
   std::size_t find_touches(const NodeBlock<Real>& block, Touch* touches) const;
-  NodeContact<Real> meet(const Moving& moving, const Vec3& x, double dt, const Real* v, Real* wall) const;
-  template <bool kAnyMoves, class Record>
+  template <Beside kBeside, class Record>
   void collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x, Real dt, Real* v,
                     Real* rubbed, Record record) const;
   template <class Visit>
@@ -89,7 +79,7 @@ class ContactTables {
   int flat_axis_ = -1;
   std::map<Index3, NearSolids> seen_;        // every block ever reached; entries stay where they are
   std::vector<const NearSolids*> of_block_;  // per block of the grid; null where no resting solid is near
-  std::vector<Moving> moving_;
+  std::vector<MovingSolid> moving_;
   std::vector<std::uint32_t> listed_begin_;  // per block, in listed_; empty where nothing moves
   std::vector<std::uint32_t> listed_;        // positions in moving_
   Bounds bounds_;                            // of the nodes, m

@@ -41,9 +41,10 @@ struct Channel {
   double initial = 0.0;
 };
 
-/// The one channel that is known by name beyond its effect, for densities of points: log volume that a particle
-/// has gained beside its strain.
+/// The channels that are known by name beyond their effects, for attributes of points: log volume that a
+/// particle has gained beside its strain, and the time at which it began, s.
 inline constexpr const char* kVolumeGained = "volume_gained";
+inline constexpr const char* kBirth = "birth";
 
 /// A set of particles that is empty when the scene begins, and filled during the run.
 struct Inlet {
@@ -63,7 +64,8 @@ struct Surroundings {
   Index3 origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice
   std::string folder;            ///< where relative paths start
   bool allow_outside_paths = false;
-  std::vector<std::string> solids;  ///< names of the colliders
+  std::vector<std::string> solids;     ///< names of the colliders
+  std::vector<SetDescription> bodies;  ///< in the scene's order
   Places places;
 
   std::string where(const std::string& key) const { return places.where(key); }
@@ -75,6 +77,19 @@ struct Surroundings {
     if (!made) return Error{made.error().kind, made.error().text(), where(key)};
     return *made;
   }
+
+  const SetDescription* body(const std::string& name) const {
+    for (const SetDescription& each : bodies) {
+      if (each.name == name) return &each;
+    }
+    return nullptr;
+  }
+  /// What is said of a key that names no body.
+  Error no_body(const std::string& name, const std::string& key) const {
+    std::string names;
+    for (const SetDescription& each : bodies) names += (names.empty() ? "\"" : ", \"") + each.name + "\"";
+    return {ErrorKind::kBadScene, "no body \"" + name + "\"; choose among " + names, where(key)};
+  }
 };
 
 /// Particles that have just been made, [first, last) of a set, with the motion of their body or emitter.
@@ -85,6 +100,7 @@ struct Newcomers {
   const SetDescription& description;
   const Surroundings& surroundings;
   std::function<Vec3(std::size_t p)> position;  ///< m, in the scene's frame
+  std::function<double(std::size_t p)> birth;   ///< s; of what is emitted, when it crossed the mouth
 };
 
 /// What effects add to while a scene is compiled.

@@ -13,11 +13,13 @@ namespace repose {
 using Effects = std::tuple<Gravity, Colliders>;
 }  // namespace repose
 #else
+#include "engine/effect/age.h"
 #include "engine/effect/cohesion.h"
 #include "engine/effect/dilatancy.h"
 #include "engine/effect/emitter.h"
 #include "engine/effect/force_field.h"
 #include "engine/effect/hardening.h"
+#include "engine/effect/manufactured.h"
 #include "engine/effect/moisture.h"
 #include "engine/effect/pin.h"
 #include "engine/effect/prestress.h"
@@ -38,6 +40,8 @@ using Effects = std::tuple<Emitters,          // particles that begin
                            Colliders,         // v* -> v-bar -> v-tilde: last of the node passes
                            Sleep,             // blocks at rest take no part
                            Prestress,         // bodies begin under their weight
+                           Manufactured,      // bodies that move as a formula says
+                           Age,               // when particles began
                            VolumeCorrection,  // around the return map, and around all that follows here
                            Hardening,         // cone <- that of the shear so far
                            Cohesion,          // cohesion, and tension after the return

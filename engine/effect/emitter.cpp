@@ -196,7 +196,13 @@ void EmitterRuntime<Real>::emit(const Working<Real>& working, std::uint64_t firs
     }
   }
   Newcomers<Real> newcomers{
-      set, 0, set.count, working.description, surroundings_, [&places](std::size_t p) { return places[p]; }};
+      set,
+      0,
+      set.count,
+      working.description,
+      surroundings_,
+      [&places](std::size_t p) { return places[p]; },
+      [&working, first](std::size_t p) { return working.stream.flow().crossing(first + p); }};
   initialize_(newcomers);
 }
 

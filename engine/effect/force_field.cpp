@@ -11,6 +11,10 @@ void describe(Fields& fields, ForceField& field) {
     f.number("drag", field.drag,
              {.unit = "1/s", .meaning = "rate at which matter takes on the velocity of the air", .low = 0.0});
   };
+  const auto grid = [&field](Fields& f, const char* values) {
+    describe_vdb(f, field.grid, values);
+    f.number("scale", field.scale, {.meaning = "the values of the grid are multiplied by it"});
+  };
   const Alternative types[] = {
       {"uniform", "one acceleration",
        [&](Fields& f) {
@@ -21,7 +25,8 @@ void describe(Fields& fields, ForceField& field) {
          f.vector("velocity", field.velocity, {.unit = "m/s", .meaning = "of the air"});
          drag(f);
        }},
-      {"vortex", "air that turns about an axis", [&](Fields& f) {
+      {"vortex", "air that turns about an axis",
+       [&](Fields& f) {
          f.vector("center", field.center, {.unit = "m", .meaning = "a point of the axis"});
          f.vector("axis", field.axis, {.meaning = "direction of the axis"});
          f.number("angular_velocity", field.angular_velocity,
@@ -29,6 +34,12 @@ void describe(Fields& fields, ForceField& field) {
          f.number("radius", field.radius,
                   {.unit = "m", .meaning = "beyond it the air turns as 1/r^2", .low = 0.0, .low_open = true});
          f.check(field.axis.norm() > 0.0, "axis", "must not be zero");
+         drag(f);
+       }},
+      {"acceleration_grid", "accelerations from a VDB file",
+       [&](Fields& f) { grid(f, "name of a grid of vectors in it, m/s^2"); }},
+      {"wind_grid", "air that moves as a VDB file says", [&](Fields& f) {
+         grid(f, "name of a grid of vectors in it: velocities of the air, m/s");
          drag(f);
        }}};
   int chosen = static_cast<int>(field.type);
@@ -72,6 +83,7 @@ void act_on_block(const ForceField& field, NodeBlock<Real>& nodes) {
 
 Vec3 ForceField::air(const Vec3& x) const {
   if (type == Type::kWind) return velocity;
+  if (type == Type::kWindGrid) return scale * values->at(x);
   const Vec3 along = axis.normalized();
   const Vec3 out = (x - center) - along * along.dot(x - center);
   const double far = std::max(1.0, out.squaredNorm() / (radius * radius));
@@ -80,6 +92,7 @@ Vec3 ForceField::air(const Vec3& x) const {
 
 Vec3 ForceField::act(const Vec3& x, const Vec3& v, double dt) const {
   if (type == Type::kUniform) return v + dt * acceleration;
+  if (type == Type::kAccelerationGrid) return v + dt * scale * values->at(x);
   // dv/dt = drag (u - v) over the step.
   return v - std::expm1(-drag * dt) * (air(x) - v);
 }
@@ -99,6 +112,14 @@ void ForceFields::declare(Fields& fields) {
 
 Result<void> ForceFields::prepare(const Surroundings& surroundings) {
   for (ForceField& field : list) {
+    if (field.type == ForceField::Type::kAccelerationGrid || field.type == ForceField::Type::kWindGrid) {
+      auto values = VectorGrid::read(field.grid, surroundings.folder, surroundings.allow_outside_paths);
+      if (!values) {
+        return Error{values.error().kind, values.error().text(),
+                     surroundings.where("force_fields." + field.name)};
+      }
+      field.values = *values;
+    }
     if (!field.bounded) continue;
     auto shape = surroundings.shape(field.shape, "force_fields." + field.name + ".shape");
     if (!shape) return shape.error();

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "engine/effect/effect.h"
+#include "engine/geometry/vdb_grid.h"
 
 namespace repose {
 
 struct ForceField {
-  enum class Type { kUniform, kWind, kVortex };
+  enum class Type { kUniform, kWind, kVortex, kAccelerationGrid, kWindGrid };
   std::string name;
   Type type = Type::kUniform;
   Vec3 acceleration{0, 0, 0};     ///< uniform: m/s^2
@@ -21,11 +22,14 @@ struct ForceField {
   Vec3 axis{0, 1, 0};             ///< vortex
   double angular_velocity = 1.0;  ///< vortex: of the air at the axis, rad/s
   double radius = 1.0;            ///< vortex: m, beyond which the air turns as 1/r^2
-  double drag = 1.0;     ///< wind, vortex: 1/s, the rate at which matter takes on the velocity of the air
+  VdbDescription grid;            ///< acceleration_grid: m/s^2; wind_grid: of the air, m/s
+  double scale = 1.0;             ///< of the values of the grid
+  double drag = 1.0;     ///< winds, vortex: 1/s, the rate at which matter takes on the velocity of the air
   bool bounded = false;  ///< whether `shape` bounds the region
   ShapeDescription shape;
   double start = 0.0, end = std::numeric_limits<double>::infinity();  ///< s
   std::shared_ptr<const Shape> region;
+  std::shared_ptr<const VectorGrid> values;  ///< of the grid; null for other types
 
   /// Velocity of the air at x, m/s.
   Vec3 air(const Vec3& x) const;

@@ -25,6 +25,13 @@ void Prestress::declare(Fields& fields) {
   });
 }
 
+Result<void> Prestress::prepare(const Surroundings& surroundings) {
+  for (const Entry& entry : list) {
+    if (surroundings.body(entry.body) == nullptr) return surroundings.no_body(entry.body, "prestress");
+  }
+  return {};
+}
+
 namespace {
 
 /// The strain of a vertical stress and a horizontal one, tau = 2 mu eps + lambda tr(eps) I: {vertical,

@@ -26,6 +26,7 @@ struct Prestress : Effect {
   std::string why() const {
     return list.empty() ? "no entry in 'prestress'" : std::to_string(list.size()) + " in 'prestress'";
   }
+  Result<void> prepare(const Surroundings& surroundings);
   template <class Real>
   void initialize(Newcomers<Real>& newcomers) const;
 };

@@ -10,6 +10,8 @@
 
 namespace repose {
 
+class MeshSequence;
+
 /// What a node may do at the surface.
 enum class Contact {
   kSticky,      ///< moves with the solid
@@ -23,19 +25,16 @@ struct Solid {
   bool hollow = false;  ///< the solid is all that lies outside the shape
   Contact contact = Contact::kSeparating;
   double friction = 0.0;
-  std::shared_ptr<const RigidMotion> motion;  ///< null where it rests
+  std::shared_ptr<const RigidMotion> motion;     ///< null where it rests or deforms
+  std::shared_ptr<const MeshSequence> sequence;  ///< null but where it deforms; `shape` is then its first frame
+
+  bool moves() const { return motion != nullptr || sequence != nullptr; }
 
   /// The same as it stands at a time (s), at rest.
-  Solid at(double time) const {
-    Solid still = *this;
-    if (motion == nullptr) return still;
-    still.shape = std::make_shared<PlacedShape>(shape, motion->pose(time));
-    still.motion = nullptr;
-    return still;
-  }
+  Solid at(double time) const;
 
-  /// Signed distance to the solid, m, negative inside it; never more than the true distance. Where it moves, x
-  /// is a point of the body, as its shape was placed.
+  /// Signed distance to the solid, m, negative inside it; never more than the true distance. Where it has a
+  /// motion, x is a point of the body, as its shape was placed.
   double distance(const Vec3& x) const {
     return hollow ? -shape->signed_distance(x) : shape->signed_distance(x);
   }

@@ -57,15 +57,47 @@ void Variation::declare_in_sand(Fields& fields, const std::string& material) {
              {.meaning = "the cohesion varies by this share to either side", .low = 0.0, .high = 1.0});
     f.number("length", p.length, {.unit = "m", .meaning = "size of the patches", .low = 0.0, .low_open = true});
     f.integer("seed", p.seed, {.meaning = "of the noise", .low = 0.0});
+    constexpr const char* kFactors =
+        "name of a grid of floats in it: factors of 0 or more where particles begin";
+    f.object("friction_grid", p.friction_grid.given, false,
+             "the cone's slope is multiplied by what a grid holds",
+             [&](Fields& grid) { describe_vdb(grid, p.friction_grid, kFactors); });
+    f.object("cohesion_grid", p.cohesion_grid.given, false, "the cohesion is multiplied by what a grid holds",
+             [&](Fields& grid) { describe_vdb(grid, p.cohesion_grid, kFactors); });
   };
-  declare_entry(fields, kName, "patches of stronger and weaker sand, from smooth noise", material, describe);
+  declare_entry(fields, kName, "patches of stronger and weaker sand, from smooth noise or grids", material,
+                describe);
+}
+
+Result<void> Variation::prepare(const Surroundings& surroundings) {
+  const auto read = [&](const VdbDescription& grid, const std::string& key,
+                        std::shared_ptr<const ScalarGrid>& values) -> Result<void> {
+    if (!grid.given) return {};
+    const auto made = ScalarGrid::read(grid, surroundings.folder, surroundings.allow_outside_paths);
+    if (!made) return Error{made.error().kind, made.error().text(), surroundings.where(key)};
+    if ((*made)->least() < 0.0) {
+      return Error{ErrorKind::kBadScene,
+                   "grid \"" + grid.name + "\" of " + grid.file + " goes down to " +
+                       std::to_string((*made)->least()) + "; factors must be 0 or more",
+                   surroundings.where(key)};
+    }
+    values = *made;
+    return {};
+  };
+  for (Entry& entry : entries) {
+    const std::string key = "materials." + entry.material + "." + kName;
+    VariationParameters& p = entry.parameters;
+    if (auto ready = read(p.friction_grid, key + ".friction_grid", p.of_friction); !ready) return ready;
+    if (auto ready = read(p.cohesion_grid, key + ".cohesion_grid", p.of_cohesion); !ready) return ready;
+  }
+  return {};
 }
 
 std::vector<Channel> Variation::channels(const SetDescription& set) const {
   const VariationParameters* p = find(set);
   std::vector<Channel> channels;
-  if (p != nullptr && p->friction > 0.0) channels.push_back({kFriction, 1.0});
-  if (p != nullptr && p->cohesion > 0.0) channels.push_back({kCohesion, 1.0});
+  if (p != nullptr && p->varies_friction()) channels.push_back({kFriction, 1.0});
+  if (p != nullptr && p->varies_cohesion()) channels.push_back({kCohesion, 1.0});
   return channels;
 }
 
@@ -74,15 +106,16 @@ void Variation::initialize(Newcomers<Real>& newcomers) const {
   const VariationParameters* p = find(newcomers.description);
   if (p == nullptr) return;
   const auto seed = static_cast<std::uint64_t>(p->seed);
-  const auto fill = [&](const char* channel, double share, std::uint64_t of) {
-    if (share <= 0.0) return;
+  const auto fill = [&](const char* channel, double share, std::uint64_t of, const ScalarGrid* grid) {
     Real* const factor = newcomers.set.extra[newcomers.set.extra_index(channel)].values.data();
     for (std::size_t i = newcomers.first; i < newcomers.last; ++i) {
-      factor[i] = static_cast<Real>(1.0 + share * noise(newcomers.position(i) / p->length, of));
+      const Vec3 x = newcomers.position(i);
+      const double smooth = share > 0.0 ? 1.0 + share * noise(x / p->length, of) : 1.0;
+      factor[i] = static_cast<Real>(grid == nullptr ? smooth : smooth * grid->at(x));
     }
   };
-  fill(kFriction, p->friction, 2 * seed);
-  fill(kCohesion, p->cohesion, 2 * seed + 1);
+  if (p->varies_friction()) fill(kFriction, p->friction, 2 * seed, p->of_friction.get());
+  if (p->varies_cohesion()) fill(kCohesion, p->cohesion, 2 * seed + 1, p->of_cohesion.get());
 }
 
 template <class Real>
@@ -99,9 +132,9 @@ void Variation::add_before_return(Assembly<Real>& assembly, std::size_t set) con
            for (std::size_t i = 0; i < chunk.particles.count; ++i) values[i] *= factor[i];
          }});
   };
-  if (p->friction > 0.0)
+  if (p->varies_friction())
     add(kFriction, "cone", [](Scratch<Real>& scratch) { return scratch.yield.cone.data(); });
-  if (p->cohesion > 0.0)
+  if (p->varies_cohesion())
     add(kCohesion, "cohesion", [](Scratch<Real>& scratch) { return scratch.yield.cohesion.data(); });
 }
 

@@ -1,8 +1,10 @@
 // Repose: sand that is not the same everywhere: factors on the slope of the cone and on the cohesion, per
-// particle, from smooth noise over the places where particles begin. They move with the sand.
+// particle, from smooth noise or grids of VDB files at the places where particles begin. They move with the
+// sand.
 #pragma once
 
 #include "engine/effect/effect.h"
+#include "engine/geometry/vdb_grid.h"
 
 namespace repose {
 
@@ -11,6 +13,11 @@ struct VariationParameters {
   double cohesion = 0.0;  ///< the cohesion by 1 +- this
   double length = 0.1;    ///< m, size of the patches
   std::int64_t seed = 1;
+  VdbDescription friction_grid, cohesion_grid;                 ///< factors beside the noise
+  std::shared_ptr<const ScalarGrid> of_friction, of_cohesion;  ///< read; null where there is none
+
+  bool varies_friction() const { return friction > 0.0 || friction_grid.given; }
+  bool varies_cohesion() const { return cohesion > 0.0 || cohesion_grid.given; }
 };
 
 struct Variation : SandEffect<VariationParameters> {
@@ -21,6 +28,8 @@ struct Variation : SandEffect<VariationParameters> {
 
   void declare_in_sand(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
+  /// Errors: those of ScalarGrid::read, and 65, a factor below 0; with the key.
+  Result<void> prepare(const Surroundings& surroundings);
   std::vector<Channel> channels(const SetDescription& set) const;
   template <class Real>
   void initialize(Newcomers<Real>& newcomers) const;

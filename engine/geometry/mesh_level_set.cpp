@@ -62,7 +62,7 @@ MeshLevelSet::MeshLevelSet(MeshLevelSet&&) noexcept = default;
 MeshLevelSet& MeshLevelSet::operator=(MeshLevelSet&&) noexcept = default;
 MeshLevelSet::~MeshLevelSet() = default;
 
-Result<MeshLevelSet> MeshLevelSet::make(const TriangleMesh& mesh, double voxel, double band) {
+Result<void> MeshLevelSet::check_size(const TriangleMesh& mesh, double voxel, double band) {
   const Bounds bounds = bounds_of(mesh);
   const double widest = (bounds.upper - bounds.lower).maxCoeff() / voxel;
   const double voxels = area_of(mesh) / (voxel * voxel) * 2 * band;
@@ -72,7 +72,13 @@ Result<MeshLevelSet> MeshLevelSet::make(const TriangleMesh& mesh, double voxel, 
                      std::to_string(voxels) + " voxels; check its scale, or use a coarser grid",
                  {}};
   }
+  return {};
+}
+
+Result<MeshLevelSet> MeshLevelSet::make(const TriangleMesh& mesh, double voxel, double band) {
+  if (auto fits = check_size(mesh, voxel, band); !fits) return fits.error();
   initialize_openvdb();
+  const Bounds bounds = bounds_of(mesh);
   auto grid = std::make_unique<Grid>(Grid{nullptr, (bounds.lower + bounds.upper) / 2, voxel});
   const VoxelMesh source{mesh, grid->center, voxel};
   const auto width = static_cast<float>(band);

@@ -11,8 +11,11 @@ namespace repose {
 
 class MeshLevelSet {
  public:
+  /// Refuses (78) a resolution at which `mesh` would need more voxels than fit in memory.
+  static Result<void> check_size(const TriangleMesh& mesh, double voxel, double band);
+
   /// Samples the distance to `mesh` (a solid as make_solid gives it) every `voxel` metres, `band` voxels to
-  /// either side. Refuses (78) a resolution that would need more voxels than fit in memory.
+  /// either side. Refuses (78) what check_size refuses.
   static Result<MeshLevelSet> make(const TriangleMesh& mesh, double voxel, double band);
 
   MeshLevelSet(MeshLevelSet&&) noexcept;

@@ -19,8 +19,4 @@ Result<TriangleMesh> read_mesh(const std::string& path);
 Result<TriangleMesh> read_obj(std::string_view bytes, const std::string& name);
 Result<TriangleMesh> read_ply(std::string_view bytes, const std::string& name);
 
-/// The full path of `file` seen from `folder`. Refuses (65) absolute paths and paths that leave the folder, by
-/// ".." or through a link, unless `allow_outside`; (66) what is not a regular file.
-Result<std::string> resolve_mesh_path(const std::string& folder, const std::string& file, bool allow_outside);
-
 }  // namespace repose

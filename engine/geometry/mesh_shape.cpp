@@ -12,9 +12,12 @@ namespace repose {
 namespace {
 
 constexpr double kVoxelsPerCell = 2;
-constexpr double kBandCells = 4;
 
 }  // namespace
+
+Result<void> MeshShape::check_size(const TriangleMesh& mesh, double spacing) {
+  return MeshLevelSet::check_size(mesh, spacing / kVoxelsPerCell, kBandCells * kVoxelsPerCell);
+}
 
 Result<std::shared_ptr<const Shape>> MeshShape::make(TriangleMesh mesh, double spacing) {
   auto level_set = MeshLevelSet::make(mesh, spacing / kVoxelsPerCell, kBandCells * kVoxelsPerCell);

@@ -12,6 +12,12 @@ namespace repose {
 
 class MeshShape : public Shape {
  public:
+  /// Cells to either side of the surface in which the distance is known.
+  static constexpr double kBandCells = 4;
+
+  /// Refuses (78) a mesh whose level set would not fit in memory.
+  static Result<void> check_size(const TriangleMesh& mesh, double spacing);
+
   /// `mesh` as make_solid gives it; `spacing` (m) is the grid's dx. Errors: those of MeshLevelSet::make.
   static Result<std::shared_ptr<const Shape>> make(TriangleMesh mesh, double spacing);
 

@@ -10,6 +10,7 @@
 #include "engine/geometry/mesh_solid.h"
 #include "engine/geometry/placement.h"
 #include "engine/geometry/revolution.h"
+#include "engine/geometry/scene_path.h"
 #include "engine/geometry/solids.h"
 
 namespace repose {
@@ -75,7 +76,7 @@ Built make_mesh(const ShapeDescription& d, const Placement& placement, const std
   if (d.file.empty()) return refuse("mesh: \"file\" must name an .obj or .ply file");
   if (!is_size(d.scale)) return refuse("mesh: \"scale\" must be greater than 0");
   if (!is_size(spacing)) return refuse("mesh: the grid's spacing must be greater than 0");
-  const auto path = resolve_mesh_path(folder, d.file, allow_outside_paths);
+  const auto path = resolve_path(folder, d.file, "mesh file", allow_outside_paths);
   if (!path) return path.error();
   auto mesh = read_mesh(*path);
   if (!mesh) return mesh.error();

@@ -59,6 +59,9 @@ Surroundings surroundings_of(const Scene& scene, const CompileOptions& options) 
   around.folder = scene.folder;
   around.allow_outside_paths = options.allow_outside_paths;
   around.places = scene.places;
+  for (const BodyDescription& body : scene.bodies) {
+    around.bodies.push_back(set_description(scene, body.name, material_index(scene, body.material)));
+  }
   return around;
 }
 
@@ -180,16 +183,24 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
 Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_paths) {
   std::vector<Solid> solids;
   for (const Collider& collider : scene.effect<Colliders>().list) {
-    auto shape = make_shape(collider.shape, scene.folder, scene.grid.spacing, allow_outside_paths);
-    if (!shape)
-      return Error{shape.error().kind, shape.error().text(),
-                   scene.where("colliders." + collider.name + ".shape")};
-    Solid solid{collider.name, *shape, collider.hollow, collider.contact, collider.friction, nullptr};
+    const auto refuse = [&](const Error& error, const char* key) {
+      return Error{error.kind, error.text(), scene.where("colliders." + collider.name + "." + key)};
+    };
+    Solid solid{collider.name, nullptr, collider.hollow, collider.contact, collider.friction, nullptr, nullptr};
+    if (collider.frames.given) {
+      auto sequence = MeshSequence::make(collider.shape, collider.frames, scene.folder, scene.grid.spacing,
+                                         allow_outside_paths);
+      if (!sequence) return refuse(sequence.error(), "frames");
+      solid.sequence = *sequence;
+      solid.shape = solid.sequence->at(collider.frames.start);
+    } else {
+      auto shape = make_shape(collider.shape, scene.folder, scene.grid.spacing, allow_outside_paths);
+      if (!shape) return refuse(shape.error(), "shape");
+      solid.shape = *shape;
+    }
     if (collider.motion.given) {
       auto motion = RigidMotion::make(collider.motion);
-      if (!motion)
-        return Error{motion.error().kind, motion.error().text(),
-                     scene.where("colliders." + collider.name + ".motion")};
+      if (!motion) return refuse(motion.error(), "motion");
       solid.motion = *motion;
     }
     solids.push_back(std::move(solid));

@@ -159,14 +159,20 @@ Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
              cells.emplace_back());
     const auto& at = cells.back();  // in cells of the lattice
     Newcomers<Real> newcomers{
-        set, 0, set.count, description, compilation.surroundings, [&](std::size_t p) {
+        set,
+        0,
+        set.count,
+        description,
+        compilation.surroundings,
+        [&](std::size_t p) {
           Vec3 x;
           for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto cell = static_cast<double>(at[p][axis] - scene.grid.origin_cells[axis]);
             x[static_cast<int>(axis)] = (cell + double(set.position[axis][p])) * scene.grid.spacing;
           }
           return x;
-        }};
+        },
+        [](std::size_t) { return 0.0; }};
     initialize(compilation.effects, newcomers);
     next_id += static_cast<std::uint32_t>(set.count);
     // Spin strains whether or not particles store C; its matrix has the norm sqrt(2) |w|.

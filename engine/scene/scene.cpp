@@ -27,7 +27,8 @@ constexpr Choice kAttributes[] = {
     {"elastic_strain", "Hencky strain of the elastic part; 6 components as of stress"},
     {"density", "kg/m^3, as the elastic strain and the volume that volume_correction remembers leave it"},
     {"speed", "m/s"},
-    {"channels", "every number per particle that an effect keeps, by its own name"}};
+    {"channels", "every number per particle that an effect keeps, by its own name"},
+    {"age", "s since a particle began, with the scene or from an emitter; asks for the scene's key \"age\""}};
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
 constexpr double kBlockCells = 8.0;          // two blocks: what keeps block colours and a periodic seam in step
@@ -246,11 +247,24 @@ void describe_surface(Fields& fields, SurfaceDescription& surface, double spacin
       {.meaning = "times that the surface is averaged over its neighbours", .low = 0.0, .high = 100.0});
 }
 
-void describe_output(Fields& fields, OutputDescription& output, double spacing) {
+/// Whether every set keeps a channel: an effect that adds it for all adds it for any.
+bool all_keep(const Scene& scene, const std::string& channel) {
+  bool kept = false;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    for (const Channel& each : effect.channels(SetDescription{})) kept = kept || each.name == channel;
+  });
+  return kept;
+}
+
+void describe_output(Fields& fields, OutputDescription& output, double spacing, bool ages) {
   fields.flag("vdb", output.vdb, "points as NAME.points.####.vdb");
   fields.flag("ply", output.ply, "points as PLY");
   fields.flag("vtp", output.vtp, "points as VTK polygonal data");
   fields.choices("attributes", output.attributes, kAttributes, "what points carry beside P, v, id and pscale");
+  const auto& wanted = output.attributes;
+  fields.check(ages || std::find(wanted.begin(), wanted.end(), OutputAttribute::kAge) == wanted.end(),
+               "attributes",
+               "\"age\" needs particles that remember when they began: add \"age\": {} to the scene");
   fields.object("surface", output.surface.given, false,
                 "the surface of the material, a level set, as NAME.surface.####.vdb",
                 [&](Fields& f) { describe_surface(f, output.surface, spacing); });
@@ -384,8 +398,9 @@ void describe(Fields& fields, Scene& scene) {
         !scene.grid.plane_strain || stays_in_plane(collider.motion, *scene.grid.plane_strain), "colliders",
         "motion of \"" + collider.name + "\" must stay in the plane of plane_strain and turn about its axis");
   }
-  fields.object("output", given, false, "what is written per frame",
-                [&](Fields& f) { describe_output(f, scene.output, scene.grid.spacing); });
+  fields.object("output", given, false, "what is written per frame", [&](Fields& f) {
+    describe_output(f, scene.output, scene.grid.spacing, all_keep(scene, kBirth));
+  });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",
                 [&](Fields& f) { describe_camera(f, scene.camera); });
 }

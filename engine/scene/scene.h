@@ -94,7 +94,7 @@ struct BodyDescription {
 
 /// What points may carry beside position, velocity, id and radius; computed from the state when it is written.
 /// Shapes and units: engine/simulation/points.h.
-enum class OutputAttribute { kStress, kPressure, kElasticStrain, kDensity, kSpeed, kChannels };
+enum class OutputAttribute { kStress, kPressure, kElasticStrain, kDensity, kSpeed, kChannels, kAge };
 
 /// The surface of the material as a level set.
 struct SurfaceDescription {

@@ -22,6 +22,7 @@ struct Source {
   const MaterialDescription& material;
   const MaterialKernels<Real>& kernels;
   const std::uint32_t* row;  ///< of each particle of the set, in the cloud
+  double time;               ///< of the state, s
 };
 
 /// The row of each particle, set after set: its place among all ids.
@@ -118,6 +119,16 @@ void put_speed(const Source<Real>& source, std::vector<float>& values) {
   }
 }
 
+template <class Real>
+void put_age(const Source<Real>& source, std::vector<float>& values) {
+  const std::size_t channel = source.set.extra_index(kBirth);
+  const bool known = channel < source.set.extra.size();
+  for (std::size_t p = 0; p < source.set.count; ++p) {
+    const double birth = known ? double(source.set.extra[channel].values[p]) : std::nan("");
+    values[source.row[p]] = static_cast<float>(source.time - birth);
+  }
+}
+
 /// How an attribute of one name is computed. An attribute of the scene is a line of the list, in its order.
 template <class Real>
 struct Recipe {
@@ -128,12 +139,13 @@ struct Recipe {
 };
 
 template <class Real>
-constexpr std::array<Recipe<Real>, 5> kRecipes{
+constexpr std::array<Recipe<Real>, 6> kRecipes{
     {{OutputAttribute::kStress, "stress", 6, put_stress<Real>},
      {OutputAttribute::kPressure, "pressure", 1, put_pressure<Real>},
      {OutputAttribute::kElasticStrain, "elastic_strain", 6, put_elastic_strain<Real>},
      {OutputAttribute::kDensity, "density", 1, put_density<Real>},
-     {OutputAttribute::kSpeed, "speed", 1, put_speed<Real>}}};
+     {OutputAttribute::kSpeed, "speed", 1, put_speed<Real>},
+     {OutputAttribute::kAge, "age", 1, put_age<Real>}}};
 
 /// Every channel of every set; zero where a set lacks it.
 template <class Real>
@@ -216,7 +228,7 @@ PointCloud make_points(const Scene& scene, const State<Real>& state, const Kerne
   const std::uint32_t* row = rows.data();
   for (const auto& set : state.sets) {
     const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
-    sources.push_back({set, material, kernels.material[material.law()], row});
+    sources.push_back({set, material, kernels.material[material.law()], row, state.counters.time});
     row += set.count;
   }
   PointCloud cloud;

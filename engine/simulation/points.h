@@ -22,6 +22,9 @@ struct PointsWanted {
   ///                  done to the volume is in v_c alone (volume_correction), so that without it sand that has
   ///                  come apart shows the density at which it last held together
   ///  speed           |v|, m/s
+  ///  age             time of the state less that at which the particle began, s; not a number where the scene
+  ///  has
+  ///                  no key "age"
   ///  channels        each number that an effect keeps, under its own name; 0 where a set keeps none
   std::vector<OutputAttribute> attributes;
   bool mass = false;  ///< PointCloud::mass

@@ -132,7 +132,7 @@ std::vector<std::string> thin_solid_warnings(const std::vector<Solid>& solids, d
   for (const Solid& solid : solids) {
     const Bounds bounds = solid.shape->bounds();
     const bool endless = !bounds.lower.allFinite() || !bounds.upper.allFinite();
-    if (solid.motion == nullptr || solid.hollow || endless) continue;
+    if (!solid.moves() || solid.hollow || endless) continue;
     // A tenth of a cell is let pass: a wall of just two cells is meant well, and a mesh errs by as much.
     const double depth = (0.5 * kLeastCells - 0.1) * spacing;
     if (reaches_depth(solid, 0.5 * (bounds.lower + bounds.upper), 0.5 * (bounds.upper - bounds.lower), depth,

@@ -72,6 +72,20 @@ TEST_F(CommandRun, LogOfAFrame_HasEveryPromisedField) {
   EXPECT_EQ(frame["hash"].asString().size(), 16u);
 }
 
+TEST_F(CommandRun, SlowMotion_LogHasTheScenesTimes) {
+  const std::string scene = tiny_scene();
+  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "4", "--quiet", "--set",
+                    "time.scale=[[0.01, 1], [0.02, 0.5], [0.03, 0.5], [0.04, 0.1]]", "--set", "colliders=[]"})
+                .code,
+            0);
+  const Json::Value frames = read_json(path("out/run.json"))["frames"];
+  const double times[] = {0.01, 0.0175, 0.0225, 0.0255};
+  ASSERT_EQ(frames.size(), 4u);
+  for (Json::ArrayIndex k = 0; k < 4; ++k) EXPECT_NEAR(frames[k]["time"].asDouble(), times[k], 1e-15) << k;
+  // It falls from rest, whatever the film's pace.
+  EXPECT_NEAR(frames[3]["momentum"][1].asDouble(), -9.81 * 0.0255 * frames[3]["mass"].asDouble(), 1e-4);
+}
+
 TEST_F(CommandRun, OneAndTwoThreads_EqualHashesOfEveryFrame) {
   const std::string scene = tiny_scene(R"(, "volume_correction": {})");
   ASSERT_EQ(repose({"run", scene, "--out", path("one"), "--threads", "1", "--quiet"}).code, 0);

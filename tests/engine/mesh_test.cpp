@@ -4,11 +4,11 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "engine/geometry/mesh_reader.h"
 #include "engine/geometry/mesh_solid.h"
 #include "tests/engine/geometry_probe.h"
+#include "tests/engine/mesh_files.h"
 
 namespace repose {
 namespace {
@@ -61,25 +61,6 @@ TriangleMesh joined(TriangleMesh a, const TriangleMesh& b, double scale, const V
   for (const Index3& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   return a;
 }
-
-/// A fresh folder that goes with the test.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("repose_mesh_test_" + std::to_string(std::random_device{}()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const fs::path& path() const { return path_; }
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-  }
-
- private:
-  fs::path path_;
-};
 
 Result<std::shared_ptr<const Shape>> load(const fs::path& folder, const std::string& file, double spacing = 0.1,
                                           bool allow_outside = false) {

@@ -157,6 +157,18 @@ TEST(Points, Attributes_FollowTheFormulas) {
   expect_attributes_follow_the_formulas<float>(1e-6);
 }
 
+TEST(Points, Age_IsTheTimeSinceBirth) {
+  State<double> state = state_of<double>({{0, 2}, {1}});
+  state.counters.time = 2.5;
+  EXPECT_TRUE(std::isnan(attribute(points_of(state, {{kAge}, false}), "age").values[0])) << "nobody remembers";
+  for (auto& set : state.sets) {
+    set.extra.push_back({kBirth, {}});
+    set.extra.back().values.resize(set.count);
+    for (std::size_t p = 0; p < set.count; ++p) set.extra.back().values[p] = 0.5 * set.id[p];
+  }
+  EXPECT_EQ(attribute(points_of(state, {{kAge}, false}), "age").values, (std::vector<float>{2.5f, 2.0f, 1.5f}));
+}
+
 TEST(Points, StressOfManyParticles_IsThatOfEach) {
   // More than one chunk, and no multiple of one.
   std::vector<std::uint32_t> ids(2 * kChunk + 37);

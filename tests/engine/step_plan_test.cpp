@@ -251,7 +251,7 @@ TEST(CompiledPlan, EffectStatus_AgreesWithTheScene) {
   const auto scene = read_scene(REPOSE_SCENES "/hourglass.json");
   ASSERT_TRUE(scene);
   for (const EffectStatus& effect : effect_status(*scene)) {
-    const std::set<std::string> asked{"gravity", "collider", "volume_correction"};
+    const std::set<std::string> asked{"gravity", "collider", "hardening", "volume_correction"};
     EXPECT_EQ(effect.on, asked.contains(effect.name)) << effect.name;
     EXPECT_NE(effect.reason, "") << effect.name;
   }

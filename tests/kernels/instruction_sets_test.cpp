@@ -4,6 +4,7 @@
 
 #include "tests/kernels/material_probe.h"
 #include "tests/kernels/node_blocks.h"
+#include "tests/kernels/yield_probe.h"
 
 namespace repose {
 namespace {
@@ -138,6 +139,37 @@ TYPED_TEST(InstructionSets, VolumeCorrection_SameBits) {
     EXPECT_TRUE(same_bits(gained[0], gained[1]) && same_bits(trace[0], trace[1])) << count;
     expect_same(particles[0].strain, particles[1].strain, "strain");
   }
+}
+
+TYPED_TEST(InstructionSets, ShapesOfYielding_SameBits) {
+  using Real = TypeParam;
+  const auto strains = strains_for_yielding<Real>(4003, 1250);
+  const std::size_t count = strains.size();
+  Samples samples(1251);
+  std::vector<Real> q(count), cohesion(count), dilatancy(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    q[p] = static_cast<Real>(samples.power_of_ten(-6, 2));
+    cohesion[p] = static_cast<Real>(samples.power_of_ten(-8, -1));
+    dilatancy[p] = static_cast<Real>(samples.uniform(0, 0.3));
+  }
+  const HenckyConstants<Real> elastic(golden_sand().elasticity);
+  std::vector<Real> cone[2], trace[2];
+  std::vector<Symmetric<Real>> cut[2], projected[2];
+  typename YieldProbe<Real>::Surface surface[2];
+  for (int set = 0; set < 2; ++set) {
+    const YieldProbe<Real> probe(kBoth[set]);
+    cone[set] = probe.harden(q, {Real(0.6), Real(0.16), Real(0.2), Real(0.17), {}, Real(3.25)});
+    cone[set] = probe.quicken(strains, cohesion, {Real(0.7), Real(0.3), Real(1e-4)}, Real(1e-4), cone[set]);
+    surface[set] = {cone[set], cohesion, dilatancy};
+    projected[set] = probe.project(strains, surface[set]);
+    trace[set] = q;
+    cut[set] = probe.cut_tension(strains, elastic, Real(30), trace[set]);
+  }
+  EXPECT_TRUE(same_bits(cone[0], cone[1]) && same_bits(projected[0], projected[1]));
+  EXPECT_TRUE(same_bits(surface[0].plastic, surface[1].plastic));
+  EXPECT_TRUE(same_bits(surface[0].sheared, surface[1].sheared));
+  EXPECT_TRUE(same_bits(surface[0].dilated, surface[1].dilated));
+  EXPECT_TRUE(same_bits(cut[0], cut[1]) && same_bits(trace[0], trace[1]));
 }
 
 TYPED_TEST(InstructionSets, AdvanceAndInspect_SameBits) {

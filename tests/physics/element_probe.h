@@ -90,6 +90,14 @@ class Element {
     EXPECT_LT(index, set.extra.size()) << "no channel " << name;
     return index < set.extra.size() ? set.extra[index].values[p] : std::nan("");
   }
+  /// Where it began and is, m: elements are strained, not moved.
+  Vec3 position(std::size_t p) const {
+    const auto& set = state_.sets[0];
+    std::size_t owner = 0;
+    while (set.begin[owner + 1] <= p) ++owner;
+    const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(state_.grid.owners()[owner])];
+    return state_.world(block, {set.position[0][p], set.position[1][p], set.position[2][p]});
+  }
   std::size_t count() const { return state_.sets[0].count; }
   std::size_t channels() const { return state_.sets[0].extra.size(); }
 

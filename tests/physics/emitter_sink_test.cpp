@@ -169,6 +169,40 @@ TEST(Emitter, ChannelsAndSpread_OfNewcomersAreInitialised) {
   EXPECT_GT(fastest - slowest, 0.1);
 }
 
+// The spout begins at 0.1 s beside a body; particles of the body have the first ids, those of the spout follow
+// in the order in which they cross its mouth.
+TEST(Age, OfBodiesAndOfTheSpout_IsTheTimeSinceTheyBegan) {
+  const auto scene_in = [](const char* precision) {
+    return scene_of(kColumn, {std::string("grid.precision=") + precision, "age={}", "emitters.spout.start=0.1",
+                              R"json(bodies=[{"name": "block", "material": "gel",
+                                "shape": {"type": "box", "lower": [0.5, 0, 0], "upper": [0.6, 0.1, 0.1]}}])json"});
+  };
+  for (const char* precision : {"single", "double"}) {
+    const Scene scene = scene_in(precision);
+    const auto simulation = simulate(scene), saved = simulate(scene), resumed = simulate(scene);
+    ASSERT_TRUE(run_frames(*simulation, 6) && run_frames(*saved, 4));
+    const std::string path =
+        std::filesystem::temp_directory_path().string() + "/repose_age_" + std::to_string(getpid());
+    ASSERT_TRUE(saved->save(path));
+    ASSERT_TRUE(resumed->load(path));
+    std::filesystem::remove_all(path);
+    ASSERT_TRUE(run_frames(*resumed, 2));
+    const PointsWanted ages{{OutputAttribute::kAge}};
+    const PointCloud points = simulation->points(ages);
+    EXPECT_EQ(points.attributes.back().values, resumed->points(ages).attributes.back().values);
+    const std::vector<float>& age = points.attributes.back().values;
+    const std::uint64_t bodies = simulation->ledger().initial;
+    const double time = simulation->counters().time;
+    ASSERT_GT(age.size(), bodies);
+    const double per_second = flow() / (std::pow(kSpacing, 3) / 8.0);
+    for (std::size_t p = 0; p < age.size(); ++p) {
+      const double serial = static_cast<double>(points.id[p]) - static_cast<double>(bodies);
+      const double expected = points.id[p] < bodies ? time : time - (0.1 + (serial + 0.5) / per_second);
+      ASSERT_NEAR(age[p], expected, 1e-7) << precision << ", particle " << points.id[p];
+    }
+  }
+}
+
 TEST(Sink, StreamThatFallsIntoIt_HoldsASteadyMass) {
   const auto simulation = simulate(scene_of(kColumn, {kFalling, kLoose, kDrain}));
   ASSERT_TRUE(run_frames(*simulation, 6));

@@ -81,5 +81,15 @@ TEST(Pin, WithVelocityAndEnd_DrawsAndLetsGo) {
   EXPECT_NEAR(free.momentum[1], drawn.momentum[1], 1e-9 * drawn.momentum[1]) << "nothing acts on it any more";
 }
 
+TEST(Pin, AfterItsEnd_WhatHungFallsFreely) {
+  const auto simulation = simulate(scene_of(kBar, {"gravity.ramp=0", "pins.top.end=0.05"}), 2);
+  const double weight = 9.81 * simulation->diagnose().mass;
+  ASSERT_TRUE(run_until(*simulation, 0.051));
+  const double begin = simulation->counters().time, before = simulation->diagnose().momentum[1];
+  ASSERT_TRUE(run_until(*simulation, 0.07));
+  const double given = weight * (simulation->counters().time - begin);
+  EXPECT_NEAR(simulation->diagnose().momentum[1] - before, -given, 1e-9 * given);
+}
+
 }  // namespace
 }  // namespace repose

@@ -1,5 +1,6 @@
 // Repose tests: what effects make of sand, on one element: each law by itself, and where two meet.
 #include <numbers>
+#include <tuple>
 
 #include "tests/physics/element_probe.h"
 
@@ -230,7 +231,7 @@ TEST(Variation, Noise_IsSmoothBoundedAndCentred) {
 }
 
 TEST(Variation, Friction_IsTheParticlesOwn) {
-  Element element(R"("friction_angle": 30, "variation": {"friction": 0.3, "length": 0.1})");
+  Element element(R"("friction_angle": 30, "variation": {"friction": 0.3, "length": 0.1, "seed": 7})");
   element.compress(3e-3);
   for (int step = 0; step < 2000; ++step) element.shear(1.0, 1e-5);
   double low = 2.0, high = 0.0;
@@ -238,10 +239,30 @@ TEST(Variation, Friction_IsTheParticlesOwn) {
     const double factor = element.channel("friction_factor", p);
     low = std::min(low, factor);
     high = std::max(high, factor);
+    EXPECT_NEAR(factor, 1.0 + 0.3 * noise(element.position(p) / 0.1, 14), 1e-12);
     EXPECT_NEAR(element.deviator(p) / element.pressure(p), 3.0 * triaxial_slope(30.0) * factor, 1e-6);
   }
   EXPECT_LT(low, 0.95);
   EXPECT_GT(high, 1.05);
+}
+
+/// What bears the sand sideways: as elastic ground, or more where the cone asks for it.
+TEST(Prestress, Stress_IsThatOfDepthAndLoad) {
+  for (const auto& [sand, entry, lateral] :
+       {std::tuple(R"("friction_angle": 30)", "", 0.3 / 0.7), std::tuple(R"("friction_angle": 10)", "", 0.0),
+        std::tuple(R"("friction_angle": 30)", R"(, "lateral": 0.8)", 0.8)}) {
+    const Element element(
+        std::string(R"("density": 2000, "poisson_ratio": 0.3, )") + sand,
+        std::string(R"("prestress": [{"body": "box", "surface": 0.5, "load": 100)") + entry + "}]");
+    const double root = std::sqrt(2.0 / 3.0), alpha = triaxial_slope(10.0);
+    const double share = lateral > 0.0 ? lateral : (root - alpha) / (root + 2.0 * alpha);
+    for (std::size_t p = 0; p < element.count(); ++p) {
+      const double vertical = -(2000.0 * 9.81 * (0.5 - element.position(p)[1]) + 100.0);
+      EXPECT_NEAR(element.stress(3, p), vertical, 1e-9 * std::abs(vertical));
+      EXPECT_NEAR(element.stress(0, p), share * vertical, 1e-9 * std::abs(vertical));
+      EXPECT_NEAR(element.stress(5, p), share * vertical, 1e-9 * std::abs(vertical));
+    }
+  }
 }
 
 TEST(Sand, ShapedByNothing_IsThePlainMap) {

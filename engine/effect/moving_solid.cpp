@@ -1,0 +1,85 @@
+#include "engine/effect/moving_solid.h"
+
+#include <algorithm>
+
+namespace repose {
+namespace {
+
+Vec3 corner(const Bounds& bounds, int k) {
+  return {k & 1 ? bounds.upper[0] : bounds.lower[0], k & 2 ? bounds.upper[1] : bounds.lower[1],
+          k & 4 ? bounds.upper[2] : bounds.lower[2]};
+}
+
+double farthest(const Bounds& bounds, const Vec3& from) {
+  double most = 0.0;
+  for (int k = 0; k < 8; ++k) most = std::max(most, (corner(bounds, k) - from).norm());
+  return most;
+}
+
+/// How far a point of the bounds may be moved from one pose to another, as the body sees it. The distance is a
+/// convex function of the point, so it is largest at a corner.
+double drift(const Bounds& bounds, const Placement& from, const Placement& to) {
+  double most = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    most = std::max(most, (from.own(corner(bounds, k)) - to.own(corner(bounds, k))).norm());
+  }
+  return most;
+}
+
+}  // namespace
+
+MovingSolid::MovingSolid(const Solid& solid, std::size_t index) : solid_(solid), index_(index) {
+  if (deforms()) return;
+  const Bounds body = solid_.shape->bounds();
+  const bool finite = body.lower.allFinite() && body.upper.allFinite();
+  radius_ = finite ? farthest(body, solid_.motion->pivot()) : std::numeric_limits<double>::infinity();
+}
+
+void MovingSolid::list_at(double time, double margin) {
+  if (!deforms()) {
+    listed_ = solid_.motion->pose(time);
+    return;
+  }
+  window_ = next_window_ = solid_.sequence->window(time, margin);
+  listed_shape_ = solid_.sequence->at(window_);
+}
+
+void MovingSolid::list_at_end() {
+  if (!deforms()) {
+    listed_ = end_;
+    return;
+  }
+  window_ = next_window_;
+  listed_shape_ = solid_.sequence->at(window_);
+}
+
+double MovingSolid::listed_distance(const Vec3& x) const {
+  if (!deforms()) return solid_.distance(listed_.own(x));
+  return (solid_.hollow ? -1.0 : 1.0) * listed_shape_->signed_distance(x);
+}
+
+bool MovingSolid::prepare(double time, double dt, const Bounds& nodes, double margin) {
+  if (deforms()) {
+    shape_ = solid_.sequence->at(time + dt);
+    ways_per_second_ = solid_.sequence->moving_share(time, time + dt) * solid_.sequence->rate();
+    next_window_ = solid_.sequence->window(time + dt, margin);
+    return next_window_ != window_;
+  }
+  begin_ = solid_.motion->pose(time);
+  end_ = solid_.motion->pose(time + dt);
+  still_ = begin_.rotation == end_.rotation && begin_.translation == end_.translation;
+  return drift(nodes, listed_, end_) > margin;
+}
+
+double MovingSolid::distance(const Vec3& x) const {
+  if (!deforms()) return solid_.distance(end_.own(x));
+  return (solid_.hollow ? -1.0 : 1.0) * shape_->signed_distance(x);
+}
+
+double MovingSolid::fastest(double from, double to, const Bounds& nodes) const {
+  if (deforms()) return solid_.sequence->fastest(from, to);
+  const Vec3 pivot = solid_.motion->pose(from).point(solid_.motion->pivot());
+  return solid_.motion->fastest(from, to, std::min(radius_, farthest(nodes, pivot)));
+}
+
+}  // namespace repose

@@ -1,0 +1,16 @@
+#include "engine/effect/solid.h"
+
+#include "engine/geometry/mesh_sequence.h"
+
+namespace repose {
+
+Solid Solid::at(double time) const {
+  Solid still = *this;
+  if (motion != nullptr) still.shape = std::make_shared<PlacedShape>(shape, motion->pose(time));
+  if (sequence != nullptr) still.shape = sequence->at(time);
+  still.motion = nullptr;
+  still.sequence = nullptr;
+  return still;
+}
+
+}  // namespace repose

@@ -1,0 +1,51 @@
+// Repose: values in space from VDB files, as other programs write them: trilinear between voxels, at places of
+// the scene. OpenVDB's types stay behind this header.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/base/params.h"
+#include "engine/base/result.h"
+#include "engine/base/vector.h"
+
+namespace repose {
+
+/// What a scene says of a grid (data only).
+struct VdbDescription {
+  bool given = false;
+  std::string file;
+  std::string name;  ///< of the grid in the file
+};
+
+/// Declares the scene keys of a grid; `values` says what stands in it, with their unit.
+void describe_vdb(Fields& fields, VdbDescription& grid, const char* values);
+
+/// Immutable, so it may be asked from many threads. Values lie where the transform of the grid puts them, in
+/// metres of the scene's frame; those of voxels that are not active are the grid's background.
+class ScalarGrid {
+ public:
+  /// Reads a grid of floats. `folder` is where relative paths start. Errors, with the file: 65, no grid of this
+  /// name (lists those there are), one of another type, values that are not finite; 66, a file that is missing
+  /// or that OpenVDB cannot read; 78, no memory.
+  static Result<std::shared_ptr<const ScalarGrid>> read(const VdbDescription& grid, const std::string& folder,
+                                                        bool allow_outside_paths);
+  virtual ~ScalarGrid() = default;
+
+  /// At x (m), in the unit of the file.
+  virtual double at(const Vec3& x) const = 0;
+  /// The least value of all, with the background.
+  virtual double least() const = 0;
+};
+
+/// The same for vectors of three floats; a staggered grid, as fluid solvers write, is read as such.
+class VectorGrid {
+ public:
+  static Result<std::shared_ptr<const VectorGrid>> read(const VdbDescription& grid, const std::string& folder,
+                                                        bool allow_outside_paths);
+  virtual ~VectorGrid() = default;
+
+  virtual Vec3 at(const Vec3& x) const = 0;
+};
+
+}  // namespace repose

@@ -1,0 +1,371 @@
+// Repose tests: motions that are known exactly. The body forces are compared with the balance of momentum by
+// numerical differentiation; then bodies must move as the formula says, the better the finer the grid.
+#include "engine/effect/manufactured.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "engine/simulation/points.h"
+#include "engine/state/state_hash.h"
+#include "tests/physics/physics_probe.h"
+
+namespace repose {
+namespace {
+
+using std::numbers::pi;
+
+constexpr const char* kVortex = R"json({"repose": 1, "name": "vortex", "parameters": {"cells": 32},
+  "grid": {"spacing": "= 1 / cells", "precision": "double", "plane_strain": "z"},
+  "materials": {"gel": {"type": "neo_hookean", "density": 1000, "youngs_modulus": 1e4, "poisson_ratio": 0.3}},
+  "bodies": [{"name": "ring", "material": "gel", "particles_per_cell": 36,
+              "shape": {"type": "revolution", "axis": [0, 0, 1],
+                        "profile": [["= 0.75 - 2 / cells", -1], ["= 1.25 + 2 / cells", -1],
+                                    ["= 1.25 + 2 / cells", 1], ["= 0.75 - 2 / cells", 1]]}}],
+  "pins": [{"name": "hub", "shape": {"type": "cylinder", "center": [0, 0, -1], "axis": [0, 0, 1], "radius": 0.75,
+                                     "height": 2}},
+           {"name": "rim", "shape": {"type": "revolution", "axis": [0, 0, 1],
+                                     "profile": [[1.25, -1], [1.75, -1], [1.75, 1], [1.25, 1]]}}],
+  "manufactured": {"ring": {"type": "generalized_vortex", "angle": 20}},
+  "gravity": {"acceleration": [0, 0, 0]}})json";
+
+constexpr const char* kBox = R"json({"repose": 1, "name": "box", "parameters": {"cells": 32},
+  "grid": {"spacing": "= 1 / cells", "precision": "double", "plane_strain": "z",
+           "periodic": {"x": {"lower": 0, "length": 1}, "y": {"lower": 0, "length": 1}}},
+  "materials": {"gel": {"type": "neo_hookean", "density": 1000, "youngs_modulus": 1e4, "poisson_ratio": 0.3}},
+  "bodies": [{"name": "box", "material": "gel", "particles_per_cell": 36,
+              "shape": {"type": "box", "lower": [0, 0, -1], "upper": [1, 1, 1]}}],
+  "manufactured": {"box": {"type": "axis_aligned", "amplitude": [0.05, -0.05, 0]}},
+  "gravity": {"acceleration": [0, 0, 0]}})json";
+
+constexpr double kAmplitude = 0.05;
+
+std::string cells(int number) {
+  return "parameters.cells=" + std::to_string(number);
+}
+
+// The formulas once more, in this file's own words.
+
+Vec3 turned(const Vec3& X, double angle) {
+  return {std::cos(angle) * X[0] - std::sin(angle) * X[1], std::sin(angle) * X[0] + std::cos(angle) * X[1],
+          X[2]};
+}
+double share(double radius) {
+  const double s = (radius - 1.0) / 0.5;
+  return std::abs(s) < 0.5 ? 1.0 - 8.0 * s * s + 16.0 * s * s * s * s : 0.0;
+}
+Vec3 vortex_place(const Vec3& X, double t) {
+  return turned(X, pi * std::sin(pi * t) * share(std::hypot(X[0], X[1])));
+}
+Vec3 box_place(const Vec3& X, double t, const Vec3& amplitude, const Elasticity& e) {
+  const double now = std::sin(pi * std::sqrt(e.youngs_modulus / e.density) * t);
+  Vec3 x = X;
+  for (int i = 0; i < 3; ++i) x[i] += amplitude[i] * now * std::sin(2.0 * pi * X[i]);
+  return x;
+}
+
+// Numerical differentiation, of fourth order.
+
+constexpr double kStep = 5e-4;
+
+Vec3 slope(const std::function<Vec3(double)>& f) {
+  const double h = kStep;
+  return (f(-2.0 * h) - f(2.0 * h) + 8.0 * (f(h) - f(-h))) / (12.0 * h);
+}
+template <class Place>
+Mat3 first_piola(Place place, const Vec3& X, double t, const Elasticity& e) {
+  Mat3 F;
+  for (int j = 0; j < 3; ++j)
+    F.col(j) = slope([&](double h) -> Vec3 { return place(X + h * Vec3::Unit(j), t); });
+  const Mat3 out = F.inverse().transpose();
+  return e.lambda() * std::log(F.determinant()) * out + e.mu() * (F - out);
+}
+/// What a body must feel to move so: a - Div P / rho.
+template <class Place>
+Vec3 balance(Place place, const Vec3& X, double t, const Elasticity& e) {
+  const auto velocity = [&](double s) -> Vec3 {
+    return slope([&](double h) -> Vec3 { return place(X, s + h); });
+  };
+  Vec3 b = slope([&](double h) -> Vec3 { return velocity(t + h); });
+  for (int j = 0; j < 3; ++j) {
+    b -= slope([&](double h) -> Vec3 { return first_piola(place, X + h * Vec3::Unit(j), t, e).col(j); }) /
+         e.density;
+  }
+  return b;
+}
+
+/// The term of the vortex in question turned around: -R (g' h)^2 along e_Theta is + in the version that
+/// circulates.
+Vec3 circulating_vortex_force(const ManufacturedSolution& vortex, const Vec3& X, double t,
+                              const Elasticity& e) {
+  const double most = vortex.angle * pi / 180.0;
+  const double radius = std::hypot(X[0], X[1]), turn = most * std::sin(pi * t) * share(radius);
+  const double rate = most * pi * std::cos(pi * t) * share(radius);
+  const Vec3 along = Vec3(-X[1], X[0], 0.0) / radius;
+  return vortex.force(X, t, e) + 2.0 * radius * rate * rate * std::sin(turn) * along;
+}
+
+TEST(ManufacturedForce, IsThatOfTheBalanceOfMomentum) {
+  ManufacturedSolution vortex, box;
+  vortex.type = ManufacturedSolution::Type::kGeneralizedVortex;
+  box.type = ManufacturedSolution::Type::kAxisAligned;
+  box.amplitude = {0.05, -0.04, 0.03};
+  const Elasticity gel{1000.0, 1e4, 0.3};
+  double vortex_error = 0.0, vortex_size = 0.0, control = 0.0, box_error = 0.0, box_size = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    const double t = 0.05 + 0.0045 * k, radius = 0.76 + 0.48 * (k * 37 % 200) / 200.0;
+    const Vec3 X = turned({radius, 0.0, 0.3}, 0.1 * k);
+    const Vec3 b = balance(vortex_place, X, t, gel);
+    vortex_error = std::max(vortex_error, (vortex.force(X, t, gel) - b).norm());
+    control = std::max(control, (circulating_vortex_force(vortex, X, t, gel) - b).norm());
+    vortex_size = std::max(vortex_size, b.norm());
+    const auto place = [&](const Vec3& Y, double s) { return box_place(Y, s, box.amplitude, gel); };
+    const Vec3 c = balance(place, X, t, gel);
+    box_error = std::max(box_error, (box.force(X, t, gel) - c).norm());
+    box_size = std::max(box_size, c.norm());
+  }
+  report("vortex_force_error", vortex_error / vortex_size);
+  report("circulating_vortex_force_error", control / vortex_size);
+  report("axis_aligned_force_error", box_error / box_size);
+  EXPECT_LT(vortex_error, 1e-6 * vortex_size);
+  EXPECT_LT(box_error, 1e-6 * box_size);
+  EXPECT_GT(control, 0.01 * vortex_size) << "the balance does not tell the two signs apart";
+}
+
+using Force = std::function<Vec3(const ManufacturedSolution&, const Vec3&, double, const Elasticity&)>;
+
+/// The pass of the effect with another force, for controls.
+template <class Real>
+void push_by(const Force& force, const Scene& scene, CompiledScene<Real>& compiled) {
+  for (auto& pass : compiled.plan.scatter[0]) {
+    if (pass.description.effect != Manufactured::kName) continue;
+    pass.run = [force, solution = scene.effect<Manufactured>().list[0],
+                e = scene.materials[0].elasticity()](Chunk<Real>& chunk) {
+      for (std::size_t p = 0; p < chunk.particles.count; ++p) {
+        Vec3 X;
+        for (int i = 0; i < 3; ++i)
+          X[i] = double(chunk.set.extra[static_cast<std::size_t>(i)].values[chunk.first + p]);
+        const Vec3 b = force(solution, X, chunk.time, e);
+        for (std::size_t i = 0; i < 3; ++i) {
+          chunk.scratch.velocity[i * kChunk + p] = static_cast<Real>(double(chunk.particles.velocity[i][p]) +
+                                                                     double(chunk.dt) * b[static_cast<int>(i)]);
+        }
+      }
+      for (std::size_t i = 0; i < 3; ++i)
+        chunk.particles.velocity[i] = chunk.scratch.velocity.data() + i * kChunk;
+    };
+  }
+}
+
+struct Clouds {
+  PointCloud start, end;
+};
+
+/// How a scene moves by `time`; by another force than its own, if one is given.
+template <class Real>
+Clouds moved(const Scene& scene, double time, const Force& force) {
+  auto compiled = compile_scene<Real>(scene, {});
+  if (!compiled) throw std::runtime_error(compiled.error().text());
+  if (force) push_by(force, scene, *compiled);
+  State<Real> state = std::move(compiled->state);
+  Stepper<Real> stepper(std::move(compiled->plan), 1);
+  const auto points = [&] { return make_points(scene, state, *stepper.plan().kernels); };
+  Clouds clouds{points(), {}};
+  while (state.counters.time < time - 1e-9) {
+    const StepReport step = stepper.step(state, time - state.counters.time);
+    EXPECT_TRUE(step.accepted);
+    if (!step.accepted) break;
+    state.counters.time += step.dt;
+  }
+  clouds.end = points();
+  return clouds;
+}
+
+struct Errors {
+  double rms = 0.0;       ///< m
+  double relative = 0.0;  ///< largest, as a share of the distance from the origin
+};
+
+/// Differences from where the formula has each particle; modulo `period`, in the plane.
+template <class Place>
+Errors errors_of(const Clouds& clouds, Place place, double period = 1e9) {
+  Errors errors;
+  for (std::size_t p = 0; p < clouds.end.size(); ++p) {
+    const auto &from = clouds.start.position[p], &to = clouds.end.position[p];
+    const Vec3 expected = place(Vec3(from[0], from[1], from[2]));
+    double square = 0.0;
+    for (int i = 0; i < 2; ++i) {
+      const double away = to[static_cast<std::size_t>(i)] - expected[i];
+      square += std::pow(away - period * std::round(away / period), 2);
+    }
+    errors.rms += square;
+    errors.relative = std::max(errors.relative, std::sqrt(square) / std::hypot(from[0], from[1]));
+  }
+  errors.rms = std::sqrt(errors.rms / static_cast<double>(clouds.end.size()));
+  return errors;
+}
+
+double order(const Errors& coarse, const Errors& fine) {
+  return std::log2(coarse.rms / fine.rms);
+}
+
+template <class Real>
+Errors vortex(const std::vector<std::string>& overrides, const Force& force = nullptr) {
+  const auto back = [](const Vec3& X) { return X; };
+  return errors_of(moved<Real>(scene_of(kVortex, overrides), 1.0, force), back);
+}
+
+/// After a quarter of the period, when all is stretched most, or more quarters.
+template <class Real>
+Errors box(const std::vector<std::string>& overrides, int quarters, const Force& force = nullptr) {
+  const Scene scene = scene_of(kBox, overrides);
+  const Elasticity e = scene.materials[0].elasticity();
+  const double time = 0.5 * quarters / std::sqrt(e.youngs_modulus / e.density);
+  const auto place = [&](const Vec3& X) { return box_place(X, time, {kAmplitude, -kAmplitude, 0.0}, e); };
+  return errors_of(moved<Real>(scene, time, force), place, 1.0);
+}
+
+const Force kNone = [](const ManufacturedSolution&, const Vec3&, double, const Elasticity&) -> Vec3 {
+  return Vec3::Zero();
+};
+
+TEST(ManufacturedVortex, AtItsHalfPeriod_IsWhereItBegan) {
+  const Errors coarse = vortex<double>({cells(16)}), fine = vortex<double>({cells(32)});
+  report("vortex_rms_16_cells", coarse.rms, "m");
+  report("vortex_rms_32_cells", fine.rms, "m");
+  report("vortex_relative_16_cells", coarse.relative);
+  report("vortex_relative_32_cells", fine.relative);
+  report("vortex_order", order(coarse, fine));
+  EXPECT_LT(coarse.relative, 0.02);
+  EXPECT_LT(fine.relative, 0.02);
+  EXPECT_GT(order(coarse, fine), 1.4);
+}
+
+TEST(ManufacturedVortex, WithTheOtherSignOrNoForce_IsRejected) {
+  const double right = vortex<double>({cells(24)}).rms;
+  const double other = vortex<double>({cells(24)}, circulating_vortex_force).rms;
+  const Errors none = vortex<double>({cells(16)}, kNone);
+  report("vortex_rms_24_cells", right, "m");
+  report("vortex_rms_24_cells_other_sign", other, "m");
+  report("vortex_rms_no_force", none.rms, "m");
+  EXPECT_LT(right, 0.001);
+  EXPECT_GT(other, 2.5 * right);
+  EXPECT_GT(none.relative, 0.02);
+}
+
+TEST(ManufacturedVortex, InFloat_IsWhereItBegan) {
+  const Errors errors = vortex<float>({cells(16)});
+  report("vortex_relative_float", errors.relative);
+  EXPECT_LT(errors.relative, 0.02);
+}
+
+TEST(ManufacturedVortex, InEveryTransferThatKeepsSpin_IsWhereItBegan) {
+  for (const char* transfer : {"apic", "flip", "aflip"}) {
+    const Errors errors = vortex<double>({cells(16), std::string("grid.transfer=") + transfer});
+    report(std::string("vortex_relative_") + transfer, errors.relative);
+    EXPECT_LT(errors.relative, 0.02) << transfer;
+  }
+}
+
+TEST(ManufacturedBox, AfterAPeriod_ConvergesByTheSecondOrder) {
+  const Errors coarse = box<double>({cells(16)}, 4), middle = box<double>({cells(32)}, 4),
+               fine = box<double>({cells(64)}, 4);
+  report("box_rms_16_cells", coarse.rms, "m");
+  report("box_rms_32_cells", middle.rms, "m");
+  report("box_rms_64_cells", fine.rms, "m");
+  report("box_order_16_to_32", order(coarse, middle));
+  report("box_order_32_to_64", order(middle, fine));
+  EXPECT_GT(order(coarse, middle), 1.6);
+  EXPECT_GT(order(middle, fine), 1.6);
+  EXPECT_LT(fine.rms, 0.002 * kAmplitude);
+}
+
+TEST(ManufacturedBox, WhereItIsStretchedMost_IsWhereItShouldBe) {
+  const Errors coarse = box<double>({cells(16)}, 1), fine = box<double>({cells(32)}, 1);
+  report("stretched_box_rms_16_cells", coarse.rms, "m");
+  report("stretched_box_rms_32_cells", fine.rms, "m");
+  EXPECT_LT(fine.rms, 0.005 * kAmplitude);
+  EXPECT_GT(order(coarse, fine), 0.9);
+}
+
+TEST(ManufacturedBox, InFloat_DiffersLittle) {
+  const Errors single = box<float>({cells(32)}, 4), both = box<double>({cells(32)}, 4);
+  report("box_rms_float", single.rms, "m");
+  EXPECT_NEAR(single.rms, both.rms, 0.05 * both.rms);
+}
+
+TEST(ManufacturedBox, WithoutItsForce_IsRejected) {
+  const Errors errors = box<double>({cells(32)}, 1, kNone);
+  report("box_rms_no_force", errors.rms, "m");
+  EXPECT_GT(errors.rms, 0.1 * kAmplitude);
+}
+
+// A step may be tried again, so what is pushed is what the nodes are told and not the particles.
+TEST(ManufacturedBox, StepThatIsRefused_LeavesParticles) {
+  const Scene scene = scene_of(kBox);
+  auto compiled = compile_scene<double>(scene, {});
+  ASSERT_TRUE(compiled);
+  compiled->plan.limits = {10.0, 1e6, 1e6, 1e6, 1e6, compiled->plan.limits.sets};
+  Stepper<double> stepper(std::move(compiled->plan), 1);
+  compiled->state.counters.time = 0.1;
+  stepper.order_if_due(compiled->state);
+  const std::uint64_t before = state_hash(compiled->state);
+  EXPECT_FALSE(stepper.step(compiled->state, std::numeric_limits<double>::infinity()).accepted);
+  EXPECT_EQ(state_hash(compiled->state), before);
+}
+
+/// A bar of 25 m, as wide as space repeats, held at x <= 0: period 4 L / sqrt(E / rho) = 10 s.
+constexpr const char* kBar = R"json({"repose": 1, "name": "bar", "parameters": {"dx": 0.390625},
+  "grid": {"spacing": "= dx", "precision": "double", "plane_strain": "z",
+           "periodic": {"y": {"lower": 0, "length": "= 8 * dx"}}},
+  "materials": {"gel": {"type": "elastic", "density": 1, "youngs_modulus": 100, "poisson_ratio": 0}},
+  "bodies": [{"name": "bar", "material": "gel", "particles_per_cell": 16,
+              "shape": {"type": "box", "lower": ["= -4 * dx", 0, -1], "upper": [25, "= 8 * dx", 1]}}],
+  "pins": [{"name": "wall", "shape": {"type": "box", "lower": [-25, -25, -1], "upper": [0, 25, 1]}}],
+  "manufactured": {"bar": {"type": "bar_mode", "length": 25, "speed": 0.1}},
+  "gravity": {"acceleration": [0, 0, 0]}})json";
+
+struct Ringing {
+  double period = 0.0;  ///< s, over ten
+  double first = 0.0;   ///< m/s, the mean velocity at its largest in the first half period
+  double loss = 0.0;    ///< of the mean velocity's largest, after ten periods
+};
+
+Ringing ring(const std::vector<std::string>& overrides) {
+  const auto simulation = simulate(scene_of(kBar, overrides), 1);
+  const double spacing = 25.0 / 64.0, mass = 25.0 * 8.0 * spacing * spacing;  // of what is free, a cell thick
+  double last_time = 0.0, last = 0.0, after = 0.0;
+  std::vector<double> crossings;
+  Ringing ringing;
+  while (simulation->counters().time < 103.0 && run_steps(*simulation, 1)) {
+    const double time = simulation->counters().time, mean = simulation->diagnose().momentum[0] / mass;
+    if (time < 3.0) ringing.first = std::max(ringing.first, std::abs(mean));
+    if (time > 97.0) after = std::max(after, std::abs(mean));
+    if (last * mean < 0.0) crossings.push_back(last_time + (time - last_time) * last / (last - mean));
+    last_time = time;
+    last = mean;
+  }
+  ringing.period = 2.0 * (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
+  ringing.loss = 1.0 - after / ringing.first;
+  return ringing;
+}
+
+TEST(ManufacturedBar, RingsInItsMode) {
+  const Ringing ringing = ring({});
+  report("bar_period", ringing.period, "s");
+  report("bar_mean_velocity", ringing.first, "m/s");
+  report("bar_loss_after_10_periods", ringing.loss);
+  EXPECT_NEAR(ringing.period, 10.0, 0.1);
+  EXPECT_NEAR(ringing.first, 0.1 * 2.0 / pi, 0.005 * 0.1);
+  EXPECT_LT(ringing.loss, 0.05);
+}
+
+TEST(ManufacturedBar, StifferByThreePercent_IsRejected) {
+  EXPECT_GT(std::abs(ring({"materials.gel.youngs_modulus=103"}).period - 10.0), 0.1);
+}
+
+}  // namespace
+}  // namespace repose
