@@ -1,0 +1,80 @@
+// Repose: the generalised conjugate residual method, for A that is not symmetric, such as the tangent of sand
+// that yields. Where A is symmetric one direction is enough and the iterates are those of conjugate residual;
+// where not, each new direction must be made conjugate to all before it, and so they are kept. Mathematically
+// it is GMRES.
+//   Eisenstat, Elman and Schultz 1983, Variational iterative methods for nonsymmetric systems of linear
+//   equations.
+//
+// When as many directions are kept as there is room for, the oldest goes. Starting over instead would throw all
+// away, and on a symmetric A, which needs only the newest, it would be slower than conjugate residual.
+#pragma once
+
+#include "engine/step/krylov.h"
+
+namespace repose {
+
+/// Keeps 2 `directions` + 5 vectors between solves; a solve asks for none. An iteration takes one product and
+/// two preconditioners: keeping P A p of each direction would save the second for half as much memory again.
+template <LinearSystem System>
+class GeneralizedConjugateResidual {
+ public:
+  using Vector = typename System::Vector;
+
+  /// Keeps the last `directions`, at least one.
+  GeneralizedConjugateResidual(const System& system, int directions)
+      : r_(system.vector()), z_(system.vector()), s_(system.vector()) {
+    const int slots = std::max(directions, 1) + 1;  // one is for the direction in the making
+    for (int j = 0; j < slots; ++j) kept_.push_back({system.vector(), system.vector(), 0.0});
+  }
+
+  /// Solves A x = b from the x that is given.
+  SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
+    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon());
+    watch.begin(true_residual(system, b, x, r_, z_));
+    std::size_t made = 0;
+    while (!watch.ended()) {
+      iterate(system, x, watch, made++);
+      if (!watch.doubts()) continue;
+      watch.correct(true_residual(system, b, x, r_, z_));
+      made = 0;
+    }
+    return watch.report();
+  }
+
+ private:
+  struct Direction {
+    Vector p, q;  // q = A p
+    double qq;    // q^T P q
+  };
+
+  /// p = z + sum of beta_j p_j with q = A p conjugate to every q_j, in the norm of P; then the best step along
+  /// it.
+  void iterate(System& system, Vector& x, ResidualWatch& watch, std::size_t made) {
+    auto& [p, q, qq] = kept_[made % kept_.size()];
+    system.copy(z_, p);
+    system.apply(z_, q);
+    system.precondition(q, s_);
+    const double ww = system.dot(q, s_);
+    for (std::size_t j = made - std::min(made, kept_.size() - 1); j < made; ++j) {
+      const Direction& old = kept_[j % kept_.size()];
+      const double beta = -system.dot(s_, old.q) / old.qq;
+      system.add(beta, old.p, p);
+      system.add(beta, old.q, q);
+    }
+    system.precondition(q, s_);
+    qq = system.dot(q, s_);
+    const double zq = system.dot(z_, q);
+    if (watch.dead_end(zq, qq, ww)) return;
+
+    const double alpha = zq / qq;
+    system.add(alpha, p, x);
+    system.add(-alpha, q, r_);
+    system.add(-alpha, s_, z_);
+    watch.advance(system.dot(r_, z_));
+  }
+
+  Vector r_, z_, s_;             // residual, P r, P q
+  std::vector<Direction> kept_;  // direction k is in k modulo their number
+};
+
+}  // namespace repose

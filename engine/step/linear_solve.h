@@ -1,0 +1,93 @@
+// Repose: a symmetric system solved by whatever it takes. The rungs, each for where the one before breaks down:
+//   1  conjugate residual
+//   2  the same from where it was, with r computed anew and no directions: the breakdown may have been rounding
+//   3  the minimal residual method, which breaks down only if A is singular
+//   4  A + delta M for A, delta growing tenfold. A direction still for Newton's method, of a stiffer problem.
+// What none of them solves is reported, and the step is to be redone with a shorter dt. Iterations used up, and
+// residuals that are down to rounding, end the ladder at once: no lower rung does better.
+#pragma once
+
+#include "engine/step/conjugate_residual.h"
+#include "engine/step/minimal_residual.h"
+
+namespace repose {
+
+/// A linear system whose `apply` can be told to add delta M x, M symmetric and positive definite.
+template <class System>
+concept ShiftableSystem = LinearSystem<System> && requires(System& system, double delta) {
+  system.shift(delta);
+};
+
+/// The shifts to try: `first`, then ten times as much, `count` in all. In units of the system's M.
+struct Shifts {
+  double first = 0.1;
+  int count = 5;
+};
+
+/// Keeps eight vectors between solves, and seven more once a system has broken conjugate residual down.
+template <ShiftableSystem System>
+class LinearSolve {
+ public:
+  using Vector = typename System::Vector;
+
+  explicit LinearSolve(const System& system, const Shifts& shifts = {})
+      : shifts_(shifts), conjugate_(system), start_(system.vector()) {}
+
+  /// Solves A x = b from the x that is given. Each rung may use all of `stop.iterations`; the report has their
+  /// sum. What is not solved leaves x no worse than it was.
+  SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
+    system.copy(x, start_);
+    SolveReport report = conjugate_.solve(system, b, x, stop);
+    Stop same = stop;  // the tolerance is relative to the start of the first rung
+    same.absolute = std::max(stop.absolute, stop.relative * report.initial_norm);
+    same.relative = 0.0;
+
+    if (stuck(report)) {
+      if (!minimal_) minimal_.emplace(system);
+      follow(report, SolveRung::kMinimalResidual, minimal_->solve(system, b, x, same));
+    }
+    if (stuck(report)) solve_shifted(system, b, x, same, report);
+    if (!report.converged() && !(report.final_norm < report.initial_norm)) {
+      system.copy(start_, x);
+      report.final_norm = report.initial_norm;
+    }
+    return report;
+  }
+
+ private:
+  static bool stuck(const SolveReport& report) {
+    return report.status == SolveStatus::kBrokeDown || report.status == SolveStatus::kSingular;
+  }
+
+  static void follow(SolveReport& report, SolveRung rung, SolveReport next) {
+    report.status = next.status;
+    report.rung = rung;
+    report.iterations += next.iterations;
+    report.final_norm = next.final_norm;
+    report.history.insert(report.history.end(), next.history.begin(), next.history.end());
+  }
+
+  /// From the start again: each shift makes another system, and what a singular A has made of x may be far off.
+  void solve_shifted(System& system, const Vector& b, Vector& x, const Stop& stop, SolveReport& report) {
+    double shift = shifts_.first;
+    for (int k = 0; k < shifts_.count; ++k, shift *= 10.0) {
+      system.copy(start_, x);
+      system.shift(shift);
+      follow(report, SolveRung::kShifted, conjugate_.solve(system, b, x, stop));
+      report.shift = shift;
+      if (report.converged() || report.status == SolveStatus::kNotFinite) break;
+    }
+    system.shift(0.0);
+    if (report.converged()) return;
+    report.shift = 0.0;
+    report.final_norm = report.initial_norm;
+    if (report.status != SolveStatus::kNotFinite) report.status = SolveStatus::kBrokeDown;
+  }
+
+  Shifts shifts_;
+  ConjugateResidual<System> conjugate_;
+  std::optional<MinimalResidual<System>> minimal_;
+  Vector start_;
+};
+
+}  // namespace repose
