@@ -1,7 +1,7 @@
 // Repose: the preconditioned conjugate residual method, for symmetric A, definite or not. Each iteration lowers
 // |r|_P as far as two directions allow, and in exact arithmetic as far as the whole Krylov space does.
-// Conjugate gradients would cost a vector less, but they minimise an energy that has no least value where A is
-// indefinite.
+// Conjugate gradients would cost two vectors less, but they minimise an energy that has no least value where A
+// is indefinite.
 //   Stiefel 1955, Relaxationsmethoden bester Strategie; Saad, Iterative methods for sparse linear systems, 6.8.
 #pragma once
 
@@ -44,8 +44,7 @@ class ConjugateResidual {
   /// rise.
   void iterate(System& system, Vector& x, ResidualWatch& watch, bool first) {
     system.apply(z_, w_);
-    double ww =
-        0.0;  // |w|_P^2, which is |q|_P^2 + |beta q_old|_P^2: w = q - beta q_old, and these are conjugate
+    double ww = 0.0;  // |w|_P^2; w = q - beta q_old, and q is conjugate to q_old
     if (first) {
       system.copy(z_, p_);
       system.copy(w_, q_);

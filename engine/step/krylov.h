@@ -74,10 +74,11 @@ struct SolveReport {
   SolveRung rung = SolveRung::kFirst;
   int iterations = 0;
   double initial_norm = 0.0;
-  double final_norm = 0.0;      ///< of the residual computed anew from x, and so what x is worth
-  double shift = 0.0;           ///< delta, where x solves (A + delta M) x = b instead
-  std::vector<double> history;  ///< if asked for: of the start, then after each iteration; never rises but for
-                                ///< the rounding that a residual computed anew brings to light
+  double final_norm = 0.0;  ///< of the residual computed anew from x, and so what x is worth
+  double shift = 0.0;       ///< delta, where x solves (A + delta M) x = b instead
+  std::vector<double>
+      history;  ///< if asked for: of the start, then after each iteration; so for each rung that
+                ///< was tried. Never rises but for the rounding that an r computed anew shows
 
   bool converged() const { return status == SolveStatus::kConverged; }
 };

@@ -24,7 +24,7 @@ struct Shifts {
   int count = 5;
 };
 
-/// Keeps eight vectors between solves, and seven more once a system has broken conjugate residual down.
+/// Keeps seven vectors between solves, and seven more once conjugate residual has broken down.
 template <ShiftableSystem System>
 class LinearSolve {
  public:

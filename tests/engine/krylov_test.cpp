@@ -110,6 +110,7 @@ TEST(Krylov, Condition1e6_NormNeverRises) {
         EXPECT_GT(history.size(), 10u);
         EXPECT_EQ(history.front(), outcome.report.initial_norm);
         EXPECT_EQ(history.back(), outcome.report.final_norm);
+        EXPECT_GT(history[history.size() - 2], 1e-7 * history.front()) << "went on after it had converged";
         for (std::size_t k = 1; k + 1 < history.size(); ++k) {
           EXPECT_LE(history[k], history[k - 1] * (1.0 + 1e-12))
               << name << " " << condition << " " << flip << " " << k;

@@ -144,6 +144,23 @@ TEST(LinearSolve, BreakdownByPassingFault_IsOverOnceStartedAnew) {
   EXPECT_EQ(outcome.report.rung, SolveRung::kRestarted);
 }
 
+TEST(LinearSolve, LaterRung_IsContentWithToleranceOfTheFirst) {
+  Dice dice(15);
+  System system(dice.symmetric(spectrum(30, 100.0)));
+  system.fault = [](int product, const System::Vector& x, System::Vector& y) {
+    const bool last = product == 8 || product == 10;  // 9 is of the residual computed anew
+    if (last) y.values -= x.values * (x.values.dot(y.values) / x.values.squaredNorm());
+  };
+  LinearSolve<System> ladder(system);
+  const Outcome outcome = solve_with(ladder, system, dice.vector(30), {.relative = 1e-3, .history = true});
+  EXPECT_TRUE(outcome.report.converged());
+  EXPECT_EQ(outcome.report.rung, SolveRung::kMinimalResidual);
+  const auto& history = outcome.report.history;
+  ASSERT_EQ(history.size(), static_cast<std::size_t>(outcome.report.iterations) + 2) << "a start for each rung";
+  EXPECT_LT(history[8], 0.5 * history[0]);
+  EXPECT_GT(history[history.size() - 2], 1e-3 * outcome.report.initial_norm);
+}
+
 TEST(LinearSolve, SingularSystem_IsSolvedShifted) {
   // The first shift, 0.1, makes the second eigenvalue zero.
   System system(VectorXd{{0, -0.1, 2}}.asDiagonal().toDenseMatrix());
