@@ -1,7 +1,7 @@
 // Repose: the preconditioned conjugate residual method, for symmetric A, definite or not. Each iteration lowers
 // |r|_P as far as two directions allow, and in exact arithmetic as far as the whole Krylov space does.
-// Conjugate gradients would cost a vector less, but they minimise an energy that has no least value where A is
-// indefinite.
+// Conjugate gradients would cost two vectors less, but they minimise an energy that has no least value where A
+// is indefinite.
 //   Stiefel 1955, Relaxationsmethoden bester Strategie; Saad, Iterative methods for sparse linear systems, 6.8.
 #pragma once
 
@@ -26,28 +26,25 @@ class ConjugateResidual {
 
   /// Solves A x = b from the x that is given.
   SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
-    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon(), kPeriod);
+    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon());
     watch.begin(true_residual(system, b, x, r_, z_));
-    for (bool first = true; !watch.ended(); first = false) {
+    bool first = true;
+    while (!watch.ended()) {
       iterate(system, x, watch, first);
-      // Computing r anew keeps p: the directions are as good as before, and without them convergence starts
-      // over.
-      if (watch.doubts()) watch.correct(true_residual(system, b, x, r_, z_));
+      first = watch.doubts();
+      if (first) watch.correct(true_residual(system, b, x, r_, z_));
     }
     return watch.report();
   }
 
  private:
-  static constexpr int kPeriod = 50;
-
   /// p = z + beta p with A p conjugate to the last one, in the norm of P; then the best step along it.
   /// The textbook has z^T w for z^T q, and the ratio of two of those for beta. They are equal in exact
   /// arithmetic; these make the step the best one whatever rounding has done to conjugacy, so that |r|_P cannot
   /// rise.
   void iterate(System& system, Vector& x, ResidualWatch& watch, bool first) {
     system.apply(z_, w_);
-    double ww =
-        0.0;  // |w|_P^2, which is |q|_P^2 + |beta q_old|_P^2: w = q - beta q_old, and these are conjugate
+    double ww = 0.0;  // |w|_P^2; w = q - beta q_old, and q is conjugate to q_old
     if (first) {
       system.copy(z_, p_);
       system.copy(w_, q_);

@@ -29,18 +29,19 @@ class GeneralizedConjugateResidual {
 
   /// Solves A x = b from the x that is given.
   SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
-    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon(), kPeriod);
+    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon());
     watch.begin(true_residual(system, b, x, r_, z_));
-    for (std::size_t made = 0; !watch.ended(); ++made) {
-      iterate(system, x, watch, made);
-      if (watch.doubts()) watch.correct(true_residual(system, b, x, r_, z_));
+    std::size_t made = 0;
+    while (!watch.ended()) {
+      iterate(system, x, watch, made++);
+      if (!watch.doubts()) continue;
+      watch.correct(true_residual(system, b, x, r_, z_));
+      made = 0;
     }
     return watch.report();
   }
 
  private:
-  static constexpr int kPeriod = 50;
-
   struct Direction {
     Vector p, q;  // q = A p
     double qq;    // q^T P q

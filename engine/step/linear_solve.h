@@ -1,15 +1,11 @@
 // Repose: a symmetric system solved by whatever it takes. The rungs, each for where the one before breaks down:
 //   1  conjugate residual
-//   2  the same once more from where it stopped: enough if the breakdown was rounding
-//   3  the minimal residual method, which does not break down
-//   4  A + delta M for A, delta growing tenfold: for a singular A. A Newton direction still, of a stiffer
-//   problem.
-// What none of them solves is reported, and x is as it was: the step is to be redone with a shorter dt.
-// Iterations used up and residuals down at rounding end the ladder at once: no lower rung does better, and x is
-// the best so far.
+//   2  the same from where it was, with r computed anew and no directions: the breakdown may have been rounding
+//   3  the minimal residual method, which breaks down only if A is singular
+//   4  A + delta M for A, delta growing tenfold. A direction still for Newton's method, of a stiffer problem.
+// What none of them solves is reported, and the step is to be redone with a shorter dt. Iterations used up, and
+// residuals that are down to rounding, end the ladder at once: no lower rung does better.
 #pragma once
-
-#include <optional>
 
 #include "engine/step/conjugate_residual.h"
 #include "engine/step/minimal_residual.h"
@@ -28,7 +24,7 @@ struct Shifts {
   int count = 5;
 };
 
-/// Keeps eight vectors between solves, and seven more once a system has broken conjugate residual down.
+/// Keeps seven vectors between solves, and seven more once conjugate residual has broken down.
 template <ShiftableSystem System>
 class LinearSolve {
  public:
@@ -38,7 +34,7 @@ class LinearSolve {
       : shifts_(shifts), conjugate_(system), start_(system.vector()) {}
 
   /// Solves A x = b from the x that is given. Each rung may use all of `stop.iterations`; the report has their
-  /// sum.
+  /// sum. What is not solved leaves x no worse than it was.
   SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
     system.copy(x, start_);
     SolveReport report = conjugate_.solve(system, b, x, stop);
@@ -46,21 +42,23 @@ class LinearSolve {
     same.absolute = std::max(stop.absolute, stop.relative * report.initial_norm);
     same.relative = 0.0;
 
-    if (report.status == SolveStatus::kBrokeDown) {
-      follow(report, SolveRung::kRestarted, conjugate_.solve(system, b, x, same));
-    }
-    if (report.status == SolveStatus::kBrokeDown) {
+    if (stuck(report)) {
       if (!minimal_) minimal_.emplace(system);
       follow(report, SolveRung::kMinimalResidual, minimal_->solve(system, b, x, same));
     }
-    if (report.status == SolveStatus::kBrokeDown || report.status == SolveStatus::kSingular) {
-      solve_shifted(system, b, x, same, report);
+    if (stuck(report)) solve_shifted(system, b, x, same, report);
+    if (!report.converged() && !(report.final_norm < report.initial_norm)) {
+      system.copy(start_, x);
+      report.final_norm = report.initial_norm;
     }
-    if (report.status == SolveStatus::kNotFinite) system.copy(start_, x);
     return report;
   }
 
  private:
+  static bool stuck(const SolveReport& report) {
+    return report.status == SolveStatus::kBrokeDown || report.status == SolveStatus::kSingular;
+  }
+
   static void follow(SolveReport& report, SolveRung rung, SolveReport next) {
     report.status = next.status;
     report.rung = rung;
@@ -69,22 +67,21 @@ class LinearSolve {
     report.history.insert(report.history.end(), next.history.begin(), next.history.end());
   }
 
-  /// From the start again: what a singular A has made of x may be far off.
+  /// From the start again: each shift makes another system, and what a singular A has made of x may be far off.
   void solve_shifted(System& system, const Vector& b, Vector& x, const Stop& stop, SolveReport& report) {
-    report.shift = shifts_.first;
-    for (int k = 0; k < shifts_.count; ++k, report.shift *= 10.0) {
+    double shift = shifts_.first;
+    for (int k = 0; k < shifts_.count; ++k, shift *= 10.0) {
       system.copy(start_, x);
-      system.shift(report.shift);
+      system.shift(shift);
       follow(report, SolveRung::kShifted, conjugate_.solve(system, b, x, stop));
+      report.shift = shift;
       if (report.converged() || report.status == SolveStatus::kNotFinite) break;
     }
     system.shift(0.0);
     if (report.converged()) return;
-    system.copy(start_, x);
-    if (report.status == SolveStatus::kNotFinite) return;
-    report.status = SolveStatus::kBrokeDown;
-    report.final_norm = report.initial_norm;
     report.shift = 0.0;
+    report.final_norm = report.initial_norm;
+    if (report.status != SolveStatus::kNotFinite) report.status = SolveStatus::kBrokeDown;
   }
 
   Shifts shifts_;

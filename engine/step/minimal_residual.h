@@ -27,9 +27,7 @@ class MinimalResidual {
 
   /// Solves A x = b from the x that is given.
   SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
-    // No period: to compute r anew is to start Lanczos' process over, so that is for when there is cause.
-    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon(),
-                        std::numeric_limits<int>::max());
+    ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon());
     watch.begin(true_residual(system, b, x, v_, z_));
     start_over(system, watch.norm());
     while (!watch.ended()) {
@@ -70,7 +68,10 @@ class MinimalResidual {
     lanczos(system, alpha);
     epsilon_ = sine_ * beta_;
     delta_bar_ = -cosine_ * beta_;
-    if (watch.vanishes(phi_bar_ * std::hypot(gamma_bar, delta_bar_))) return;
+    // A P r = |r|_P (gamma_bar v + delta_bar v_new), and the part of r along v is -cosine |r|_P.
+    const double rr = phi_bar_ * phi_bar_;
+    const double ww = rr * (gamma_bar * gamma_bar + delta_bar_ * delta_bar_);
+    if (watch.singular(-cosine_ * gamma_bar * rr, ww)) return;
 
     // The rotation that removes beta from below the diagonal.
     const double gamma = std::hypot(gamma_bar, beta_);
@@ -82,8 +83,7 @@ class MinimalResidual {
     watch.advance(phi_bar_ * phi_bar_);
   }
 
-  /// beta_new v_new = A z - alpha v - beta v_old, z_new = P v_new, both before they are scaled to |v_new|_P
-  /// = 1.
+  /// v_new = A z - alpha v - beta v_old and z_new = P v_new, of length beta_new yet.
   void lanczos(System& system, double alpha) {
     system.scale_add(w_, -beta_, v_old_);
     system.add(-alpha, v_, v_old_);
