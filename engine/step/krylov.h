@@ -7,7 +7,6 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -108,7 +107,7 @@ class ResidualWatch {
     fresh_ = false;
     norm_ = rr < 0.0 ? 0.0 : std::sqrt(rr);
     if (stop_.history) report_.history.push_back(norm_);
-    if (!std::isfinite(norm_)) status_ = SolveStatus::kNotFinite;
+    if (!std::isfinite(norm_)) end(SolveStatus::kNotFinite);
   }
 
   /// Whether an iteration cannot go on; takes z^T w and w^T P w, with z = P r and w = A z, before x changes.
@@ -121,7 +120,7 @@ class ResidualWatch {
     const bool lost =
         std::abs(zw) <= noise * scale_ * norm_ * norm_ && length <= std::sqrt(noise) * scale_ * norm_;
     if (!std::isfinite(zw) || !std::isfinite(ww)) {
-      status_ = SolveStatus::kNotFinite;
+      end(SolveStatus::kNotFinite);
     } else if (lost || length == 0.0) {
       seems(SolveStatus::kSingular);
     }
@@ -132,7 +131,7 @@ class ResidualWatch {
   /// w^T P w.
   bool dead_end(double zq, double qq, double ww) {
     if (!std::isfinite(qq)) {
-      status_ = SolveStatus::kNotFinite;
+      end(SolveStatus::kNotFinite);
     } else if (ww < 0.0 || qq < 0.0) {
       seems(SolveStatus::kBrokeDown);
     } else if (!singular(zq, ww) && (qq == 0.0 || std::abs(zq) <= kZero * epsilon_ * norm_ * std::sqrt(ww))) {
@@ -154,15 +153,15 @@ class ResidualWatch {
     // Most of the residual is rounding, and it has not even halved since it was last known.
     const bool stagnates = claimed < 0.5 * norm_ && norm_ > 0.5 * true_norm_;
     if (rr < 0.0) {
-      status_ = SolveStatus::kBrokeDown;
+      end(SolveStatus::kBrokeDown);
     } else if (!std::isfinite(norm_)) {
-      status_ = SolveStatus::kNotFinite;
+      end(SolveStatus::kNotFinite);
     } else if (norm_ <= tolerance_) {
-      status_ = SolveStatus::kConverged;
+      end(SolveStatus::kConverged);
     } else if (stagnates) {
-      status_ = SolveStatus::kStagnated;
+      end(SolveStatus::kStagnated);
     } else if (report_.iterations >= stop_.iterations) {
-      status_ = SolveStatus::kCapped;
+      end(SolveStatus::kCapped);
     }
     if (stop_.history) report_.history.back() = norm_;
     if (alarmed_ && !ended()) report_.rung = SolveRung::kRestarted;
@@ -171,11 +170,11 @@ class ResidualWatch {
     true_norm_ = norm_;
   }
 
-  bool ended() const { return status_.has_value(); }
+  bool ended() const { return ended_; }
   double norm() const { return norm_; }
 
   SolveReport report() {
-    report_.status = status_.value_or(SolveStatus::kBrokeDown);
+    report_.status = status_;
     report_.final_norm = norm_;
     return std::move(report_);
   }
@@ -184,11 +183,15 @@ class ResidualWatch {
   static constexpr double kZero = 64.0;   // machine epsilons that count as zero
   static constexpr double kNoise = 16.0;  // machine epsilons that a product may be off by
 
+  void end(SolveStatus status) {
+    status_ = status;
+    ended_ = true;
+  }
   bool stuck() const { return ended() || alarmed_; }
   /// It is so in the first iteration from an r computed anew; in any other, r is computed anew first.
   void seems(SolveStatus status) {
     if (fresh_) {
-      status_ = status;
+      end(status);
     } else {
       alarmed_ = true;
     }
@@ -197,7 +200,8 @@ class ResidualWatch {
   Stop stop_;
   double epsilon_;
   SolveReport report_;
-  std::optional<SolveStatus> status_;
+  SolveStatus status_ = SolveStatus::kBrokeDown;
+  bool ended_ = false;
   bool alarmed_ = false;  // an iteration seemed unable to go on
   double tolerance_ = 0.0;
   double norm_ = 0.0;

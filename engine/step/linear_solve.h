@@ -7,6 +7,8 @@
 // residuals that are down to rounding, end the ladder at once: no lower rung does better.
 #pragma once
 
+#include <optional>
+
 #include "engine/step/conjugate_residual.h"
 #include "engine/step/minimal_residual.h"
 
