@@ -185,6 +185,28 @@ Result<void> read_rest(ChunkReader& reader, RestField& rest) {
   });
 }
 
+template <class Real>
+Result<void> write_acceleration(AtomicFile& file, const LastingNodeField<Real>& kept) {
+  const std::uint64_t count = kept.blocks.size();
+  if (auto written = write_chunk(file, "acceleration.count", &count, sizeof count); !written) return written;
+  if (auto written = write_chunk(file, "acceleration.blocks", kept.blocks.data(), count * sizeof(Index3));
+      !written)
+    return written;
+  return write_chunk(file, "acceleration.values", kept.field.values.data(),
+                     count * kBlockValues * sizeof(Real));
+}
+
+template <class Real>
+Result<void> read_acceleration(ChunkReader& reader, LastingNodeField<Real>& kept) {
+  std::uint64_t count = 0;
+  if (auto read = reader.read("acceleration.count", &count, sizeof count); !read) return read;
+  kept.blocks.resize(count);
+  if (auto read = reader.read("acceleration.blocks", kept.blocks.data(), count * sizeof(Index3)); !read)
+    return read;
+  kept.field.resize(count);
+  return reader.read("acceleration.values", kept.field.values.data(), count * kBlockValues * sizeof(Real));
+}
+
 Result<Head> read_head(ChunkReader& reader) {
   Head head;
   std::string bytes = bytes_of(head);  // for its size
@@ -227,6 +249,9 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   if (state.rest.on) {
     if (auto written = write_rest(*file, state.rest); !written) return written;
   }
+  if (state.acceleration.on) {
+    if (auto written = write_acceleration(*file, state.acceleration); !written) return written;
+  }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto written = write_chunk(*file, "tallies", state.tallies.data(), tally_bytes); !written) return written;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
@@ -261,6 +286,9 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   if (state.rest.on) {
     state.rest.resize(head->owners);
     if (auto read = read_rest(*reader, state.rest); !read) return read;
+  }
+  if (state.acceleration.on) {
+    if (auto read = read_acceleration(*reader, state.acceleration); !read) return read;
   }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto read = reader->read("tallies", state.tallies.data(), tally_bytes); !read) return read;

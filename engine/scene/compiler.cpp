@@ -226,6 +226,10 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
   compiled.plan = compile_plan(compilation, state, compiled.solids);
   state.rest.on = compiled.plan.rest.has_value();
+  state.acceleration.on = compiled.plan.implicit.has_value();
+  if (state.rest.on && state.acceleration.on)
+    return Error{ErrorKind::kBadScene, "is for explicit steps; leave it out, or time.integrator at explicit",
+                 scene.where("sleep")};
   if (auto valid = compiled.plan.validate(state); !valid) return valid.error();
   state.tallies.assign(compiled.plan.tallies(), 0.0);
   return compiled;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/aligned_array.h"
+#include "engine/base/vector.h"
 #include "kernels/layout/node_block.h"
 
 namespace repose {
@@ -25,6 +26,16 @@ struct NodeField {
   Real* block(std::size_t index) { return values.data() + index * kBlockValues; }
   const Real* block(std::size_t index) const { return values.data() + index * kBlockValues; }
   std::size_t bytes() const { return values.bytes(); }
+};
+
+/// A field that outlives orders: it knows the blocks that it was written for.
+template <class Real>
+struct LastingNodeField {
+  bool on = false;             ///< whether the scene's steps keep it
+  std::vector<Index3> blocks;  ///< in the order of their values
+  NodeField<Real> field;
+
+  std::size_t bytes() const { return field.bytes() + blocks.capacity() * sizeof(Index3); }
 };
 
 template <class Real>

@@ -31,6 +31,7 @@ template <class Real>
 void Stepper<Real>::follow(State<Real>& state) {
   for (const auto& pass : plan_.order) pass.run(state);
   if (rest_) rest_->forget();
+  if (implicit_) implicit_->forget();
 }
 
 /// Returns whether particles have begun or ended.

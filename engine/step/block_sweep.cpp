@@ -12,16 +12,27 @@ void BlockSweep<Real>::begin(State<Real>& state, Real dt) {
 }
 
 template <class Real>
-void BlockSweep<Real>::gather_gradient(Chunk<Real>& chunk) const {
+void BlockSweep<Real>::gather(const Chunk<Real>& chunk, const Real* arena, Real* gradient) const {
   GatherInput<Real> in{};
   in.particles = chunk.particles;
   in.lattice = lattice_;
+  for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = gradient + k * kChunk;
+  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gradient(in, arena);
+}
+
+template <class Real>
+void BlockSweep<Real>::gather_gradient(Chunk<Real>& chunk) const {
+  gather(chunk, chunk.scratch.arena.data(), chunk.scratch.gradient.data());
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
-    in.gradient[k] = chunk.scratch.gradient.data() + k * kChunk;
-    chunk.moving_gradient[k] = in.gradient[k];
+    chunk.moving_gradient[k] = chunk.scratch.gradient.data() + k * kChunk;
   }
-  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gradient(in,
-                                                                                    chunk.scratch.arena.data());
+}
+
+template <class Real>
+void BlockSweep<Real>::gather_whole_gradient(Chunk<Real>& chunk, ImplicitScratch<Real>& own) const {
+  gather_gradient(chunk);
+  gather(chunk, own.begin.data(), own.gradient.data());
+  for (std::size_t k = 0; k < kAffineComponents * kChunk; ++k) chunk.scratch.gradient[k] += own.gradient[k];
 }
 
 template <class Real>

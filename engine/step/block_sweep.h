@@ -14,9 +14,11 @@ namespace repose {
 /// What passes of an implicit step hand on within a chunk, beside Scratch; one per thread.
 template <class Real>
 struct ImplicitScratch {
-  AlignedArray<Real> arena{kArenaValues};                 ///< what particles add to nodes
-  AlignedArray<Real> strain{kStrainComponents * kChunk};  ///< trial strain
-  AlignedArray<Real> matrix{kAffineComponents * kChunk};  ///< S or its change, by rows
+  AlignedArray<Real> arena{kArenaValues};                   ///< what particles add to nodes
+  AlignedArray<Real> strain{kStrainComponents * kChunk};    ///< trial strain
+  AlignedArray<Real> matrix{kAffineComponents * kChunk};    ///< S or its change, by rows
+  AlignedArray<Real> begin{kArenaValues};                   ///< v^n of the nodes
+  AlignedArray<Real> gradient{kAffineComponents * kChunk};  ///< of v^n
 };
 
 template <class Real>
@@ -49,17 +51,24 @@ class BlockSweep {
     return sum;
   }
 
+  /// Whether a sweep has v^n at hand.
+  enum class Base { kNone, kBegin };
+
   /// Calls body(set, chunk, own) for all particles, with the nodes of `from` in the arena of the chunk's
   /// scratch. What the body adds to the arena of `own` goes to `to`, which is cleared before.
   template <class Body>
-  void over_particles(const Vector& from, Vector& to, Body body);
+  void over_particles(const Vector& from, Vector& to, Base base, Body body);
 
-  /// The gradient of the arena's velocities at the particles of a chunk, in chunk.moving_gradient.
+  /// The gradient of the arena's vectors at the particles of a chunk, in chunk.moving_gradient.
   void gather_gradient(Chunk<Real>& chunk) const;
+  /// The same with that of v^n added.
+  void gather_whole_gradient(Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
   /// Adds -scale S g_i to the nodes, S in own.matrix.
   void push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const;
 
  private:
+  void gather(const Chunk<Real>& chunk, const Real* arena, Real* gradient) const;
+
   const StepPlan<Real>& plan_;
   Threads& threads_;
   std::vector<Scratch<Real>>& scratch_;
@@ -72,7 +81,7 @@ class BlockSweep {
 
 template <class Real>
 template <class Body>
-void BlockSweep<Real>::over_particles(const Vector& from, Vector& to, Body body) {
+void BlockSweep<Real>::over_particles(const Vector& from, Vector& to, Base base, Body body) {
   State<Real>& state = *state_;
   for_each_block([&](std::size_t block) { std::memset(to.block(block), 0, kBlockValues * sizeof(Real)); });
   const auto& stencil = plan_.kernels->stencil[plan_.transfer.stencil];
@@ -84,16 +93,18 @@ void BlockSweep<Real>::over_particles(const Vector& from, Vector& to, Body body)
       ImplicitScratch<Real>& own = own_[thread];
       const auto owner = static_cast<std::size_t>(owners[i]);
       const auto next = static_cast<std::size_t>(i + 1 < owners.size() ? owners[i + 1] : owners[i]);
-      const Real* read[kNeighbours];
+      const Real *read[kNeighbours], *begin[kNeighbours];
       Real* write[kNeighbours];
       const auto neighbours = state.grid.neighbours(owner);
       for (std::size_t n = 0; n < kNeighbours; ++n) {
         const bool there = neighbours[n] >= 0;
         read[n] = there ? from.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
+        begin[n] = there ? state.before_forces.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
         write[n] = there ? to.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
       }
       const std::uint64_t rows = state.rows_touched[owner];
       stencil.load_arena(scratch.arena.data(), rows, read);
+      if (base == Base::kBegin) stencil.load_arena(own.begin.data(), rows, begin);
       std::memset(own.arena.data(), 0, kArenaValues * sizeof(Real));
       for_each_chunk(state, owner, next, dt_, scratch,
                      [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });

@@ -115,6 +115,16 @@ void ContactSet<Real>::remember(std::size_t block, const Real* r) {
 }
 
 template <class Real>
+void ContactSet<Real>::release(std::size_t block) {
+  for (Node& node : nodes_[block]) {
+    for (std::size_t k = 0; k < node.holds.size(); ++k) {
+      node.active[k] = node.holds[k].kind == Hold<Real>::Kind::kAgainst ? 0 : 1;
+    }
+    span(node);
+  }
+}
+
+template <class Real>
 int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
   int changes = 0;
   for (Node& node : nodes_[block]) {

@@ -35,6 +35,8 @@ class ContactSet {
     }
   }
 
+  /// Lets all contacts go that only push.
+  void release(std::size_t block);
   /// Takes up contacts that v passes. Returns how many changed.
   int take_up(std::size_t block, const Real* v);
   /// Lets contacts go whose remembered reaction pulls.

@@ -42,6 +42,14 @@ struct Hold {
   Real normal[3] = {};
   Real bound = 0;         ///< m/s
   Real velocity[3] = {};  ///< m/s
+
+  /// The same of the difference to a velocity.
+  void relative_to(const Real* v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      velocity[axis] -= v[axis];
+      bound -= normal[axis] * v[axis];
+    }
+  }
 };
 
 /// Lists what may hold the nodes of a block in this step, whether or not it does yet.

@@ -52,30 +52,71 @@ template <class Real>
 ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   sweep_.begin(state, dt);
   if (orders_ != state.counters.orders) follow_topology();
+  carry_acceleration();
   collect_holds();
 
-  system_.copy(state.before_forces, v_);
-  sweep_.for_each_block([&](std::size_t b) {
-    Real* const v = v_.block(b);
-    for (std::size_t node = 0; node < kBlockNodes; ++node) v[node * kNodeValues] = Real(0);
-    contacts_.take_up(b, v);
-  });
-  obey_contacts(v_);
+  start();
 
   ImplicitReport report;
   const auto& settings = implicit_.settings;
   NewtonStop stop;
   stop.iterations = static_cast<int>(settings.newton_iterations);
-  if (evaluate(v_)) {
-    stop.scale = mass_norm_of_forces();
-    report.tolerance = stop.tolerance = settings.tolerance * stop.scale;
-  }
+  stop.scale = scale_;
+  report.tolerance = stop.tolerance = settings.tolerance * scale_;
   report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
   linear_ = SolveStatus::kConverged;
   report.newton = newton(*this, v_, step_, trial_, stop);
   report.linear = linear_;
-  publish(v_);
+  if (report.newton.end == NewtonEnd::kConverged) publish(v_);
   return report;
+}
+
+/// Brings the acceleration of the last step to the blocks as they now lie. Blocks that are new begin with none.
+template <class Real>
+void ImplicitStep<Real>::carry_acceleration() {
+  LastingNodeField<Real>& kept = sweep_.state().acceleration;
+  const BlockGrid& grid = sweep_.state().grid;
+  const auto blocks = grid.blocks();
+  accelerated_ = !kept.blocks.empty();
+  if (std::equal(blocks.begin(), blocks.end(), kept.blocks.begin(), kept.blocks.end())) return;
+  Vector now = system_.vector();
+  for (std::size_t b = 0; b < kept.blocks.size(); ++b) {
+    const std::int32_t place = grid.find_block(kept.blocks[b]);
+    if (place >= 0) std::copy_n(kept.field.block(b), kBlockValues, now.block(static_cast<std::size_t>(place)));
+  }
+  kept.field = std::move(now);
+  kept.blocks.assign(blocks.begin(), blocks.end());
+}
+
+/// The first guess: the change of velocity of the step before, at its rate, or none where that is better.
+template <class Real>
+void ImplicitStep<Real>::start() {
+  const auto obeying = [&] {
+    sweep_.for_each_block([&](std::size_t b) {
+      contacts_.release(b);
+      contacts_.take_up(b, v_.block(b));
+      contacts_.obey(b, v_.block(b));
+    });
+  };
+  std::optional<double> by_rate;
+  if (accelerated_) {
+    const Real dt = sweep_.dt();
+    sweep_.for_each_block([&](std::size_t b) {
+      const Real* const from = sweep_.state().acceleration.field.block(b);
+      Real* const to = v_.block(b);
+      for (std::size_t k = 0; k < kBlockValues; ++k) to[k] = dt * from[k];
+    });
+    obeying();
+    by_rate = evaluate(v_);
+    system_.copy(v_, trial_);
+  }
+  sweep_.for_each_block([&](std::size_t b) { std::memset(v_.block(b), 0, kBlockValues * sizeof(Real)); });
+  obeying();
+  const auto at_rest = evaluate(v_);
+  scale_ = mass_norm_of_forces();
+  if (!by_rate || (at_rest && *at_rest <= *by_rate)) return;
+  std::swap(v_, trial_);
+  obeying();
 }
 
 template <class Real>
@@ -87,6 +128,8 @@ void ImplicitStep<Real>::collect_holds() {
     const NodeBlock<Real> block{state, b, state.nodes.block(b), sweep_.dt(), state.counters.time};
     std::vector<Hold<Real>> holds;
     for (const auto& pass : plan_.contacts) pass.run(block, holds);
+    const Real* const begin = state.before_forces.block(b);
+    for (Hold<Real>& hold : holds) hold.relative_to(begin + hold.node * kNodeValues + 1);
     contacts_.set_block(b, holds);
   });
 }
@@ -96,7 +139,7 @@ template <class Real>
 MaterialInput<Real> ImplicitStep<Real>::try_strain(std::size_t set, Chunk<Real>& chunk,
                                                    ImplicitScratch<Real>& own) const {
   const SetResponse<Real>& response = implicit_.sets[set];
-  sweep_.gather_gradient(chunk);
+  sweep_.gather_whole_gradient(chunk, own);
   MaterialInput<Real> in{};
   in.constants = response.constants.get();
   in.dt = sweep_.dt();
@@ -137,10 +180,11 @@ bool ImplicitStep<Real>::stress(std::size_t set, Chunk<Real>& chunk, ImplicitScr
 template <class Real>
 std::optional<double> ImplicitStep<Real>::evaluate(const Vector& v) {
   std::atomic<bool> sound = true;
-  sweep_.over_particles(v, residual_, [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
-    if (!stress(k, chunk, own)) sound.store(false, std::memory_order_relaxed);
-    sweep_.push(chunk, own, static_cast<double>(sweep_.dt()) * chunk.set.particle_volume);
-  });
+  sweep_.over_particles(v, residual_, BlockSweep<Real>::Base::kBegin,
+                        [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+                          if (!stress(k, chunk, own)) sound.store(false, std::memory_order_relaxed);
+                          sweep_.push(chunk, own, static_cast<double>(sweep_.dt()) * chunk.set.particle_volume);
+                        });
   if (!sound) return std::nullopt;
   const double sum = sweep_.sum_of_blocks([&](std::size_t b) {
     Real* const r = residual_.block(b);
@@ -155,10 +199,11 @@ std::optional<double> ImplicitStep<Real>::evaluate(const Vector& v) {
   return std::isfinite(sum) ? std::optional<double>(std::sqrt(sum)) : std::nullopt;
 }
 
-/// dt f -> r = m (v - v^free) - dt f, less what contacts bear.
+/// dt f -> r = m (dv - (v^free - v^n)) - dt f, less what contacts bear.
 template <class Real>
 void ImplicitStep<Real>::finish_residual(std::size_t block, const Real* v, Real* r) {
   const Real* const nodes = sweep_.state().nodes.block(block);
+  const Real* const begin = sweep_.state().before_forces.block(block);
   Real impulse[kBlockValues];
   std::copy_n(r, kBlockValues, impulse);
   contacts_.project(block, impulse);
@@ -171,7 +216,8 @@ void ImplicitStep<Real>::finish_residual(std::size_t block, const Real* v, Real*
     const Real mass = nodes[at];
     r[at] = Real(0);
     for (std::size_t c = 1; c < kNodeValues; ++c) {
-      r[at + c] = mass > Real(0) ? mass * (v[at + c] - nodes[at + c]) - r[at + c] : Real(0);
+      const Real outer = nodes[at + c] - begin[at + c];
+      r[at + c] = mass > Real(0) ? mass * (v[at + c] - outer) - r[at + c] : Real(0);
     }
   }
   contacts_.remember(block, r);
@@ -202,12 +248,13 @@ double ImplicitStep<Real>::mass_norm_of_forces() {
 template <class Real>
 void ImplicitStep<Real>::linearize(const Vector& v) {
   const auto mode = static_cast<std::size_t>(implicit_.settings.mode);
-  sweep_.over_particles(v, right_, [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
-    const MaterialInput<Real> in = try_strain(k, chunk, own);
-    const SetResponse<Real>& response = implicit_.sets[k];
-    response.kernels.linearize[mode](
-        {in, yield_surface(response, chunk.scratch), unilateral_, system_.tangent(k, chunk)});
-  });
+  sweep_.over_particles(v, right_, BlockSweep<Real>::Base::kBegin,
+                        [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+                          const MaterialInput<Real> in = try_strain(k, chunk, own);
+                          const SetResponse<Real>& response = implicit_.sets[k];
+                          response.kernels.linearize[mode]({in, yield_surface(response, chunk.scratch),
+                                                            unilateral_, system_.tangent(k, chunk)});
+                        });
 }
 
 template <class Real>
@@ -244,11 +291,6 @@ void ImplicitStep<Real>::take(const Vector& v, double length, const Vector& step
 }
 
 template <class Real>
-void ImplicitStep<Real>::obey_contacts(Vector& v) {
-  sweep_.for_each_block([&](std::size_t b) { contacts_.obey(b, v.block(b)); });
-}
-
-template <class Real>
 bool ImplicitStep<Real>::change_contacts(Vector& v) {
   const double changes = sweep_.sum_of_blocks([&](std::size_t b) {
     if (!contacts_.any(b)) return 0.0;
@@ -256,19 +298,23 @@ bool ImplicitStep<Real>::change_contacts(Vector& v) {
     return static_cast<double>(freed + contacts_.take_up(b, v.block(b)));
   });
   if (changes == 0.0) return false;
-  obey_contacts(v);
+  sweep_.for_each_block([&](std::size_t b) { contacts_.obey(b, v.block(b)); });
   return true;
 }
 
 /// Writes the velocities to the nodes.
 template <class Real>
-void ImplicitStep<Real>::publish(Vector& v) {
+void ImplicitStep<Real>::publish(const Vector& v) {
   sweep_.for_each_block([&](std::size_t b) {
     Real* const nodes = sweep_.state().nodes.block(b);
-    const Real* const from = v.block(b);
+    const Real *const from = v.block(b), *const begin = sweep_.state().before_forces.block(b);
+    Real* const rate = sweep_.state().acceleration.field.block(b);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      if (!(nodes[at] > Real(0))) continue;
-      for (std::size_t c = 1; c < kNodeValues; ++c) nodes[at + c] = from[at + c];
+      const bool empty = !(nodes[at] > Real(0));
+      for (std::size_t c = 1; c < kNodeValues; ++c) {
+        rate[at + c] = empty ? Real(0) : from[at + c] / sweep_.dt();
+        if (!empty) nodes[at + c] = begin[at + c] + from[at + c];
+      }
     }
     contacts_.for_each_reaction(b, [&](int node, const Real* reaction) {
       Real* const at = nodes + node * kNodeValues;

@@ -38,6 +38,8 @@ class ImplicitStep {
   /// + dt f / m, so that friction sees the impulse of the contact (Klar et al. 2016, section 8.1).
   ImplicitReport solve(State<Real>& state, Real dt);
 
+  /// After a state was loaded: what was known of its topology may be of another.
+  void forget() { orders_ = -1; }
   std::size_t bytes() const;
 
   // What Newton's method asks for (engine/step/newton.h).
@@ -59,8 +61,9 @@ class ImplicitStep {
   MaterialInput<Real> try_strain(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
   bool stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
   void finish_residual(std::size_t block, const Real* v, Real* r);
-  void obey_contacts(Vector& v);
-  void publish(Vector& v);
+  void carry_acceleration();
+  void start();
+  void publish(const Vector& v);
   double mass_norm_of_forces();
 
   const StepPlan<Real>& plan_;
@@ -73,7 +76,10 @@ class ImplicitStep {
   std::optional<LinearSolve<TangentSystem<Real>>> symmetric_;
   std::optional<GeneralizedConjugateResidual<TangentSystem<Real>>> general_;
 
+  // Unknown is dv = v - v^n: what is small beside v keeps its digits in single precision.
   Vector v_, step_, trial_, residual_, right_;
+  bool accelerated_ = false;  // whether the last step is known
+  double scale_ = 1.0;
   std::vector<double> inner_;  // per block: |dt f_int|^2 in the norm of the inverse mass
   std::int64_t orders_ = -1;   // of the topology that vectors are made for
   SolveStatus linear_ = SolveStatus::kConverged;
