@@ -54,7 +54,6 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   if (orders_ != state.counters.orders) follow_topology();
   carry_acceleration();
   collect_holds();
-
   start();
 
   ImplicitReport report;
@@ -102,9 +101,14 @@ void ImplicitStep<Real>::start() {
   if (accelerated_) {
     const Real dt = sweep_.dt();
     sweep_.for_each_block([&](std::size_t b) {
-      const Real* const from = sweep_.state().acceleration.field.block(b);
+      const Real *const from = sweep_.state().acceleration.field.block(b), *const nodes =
+                                                                               sweep_.state().nodes.block(b);
       Real* const to = v_.block(b);
-      for (std::size_t k = 0; k < kBlockValues; ++k) to[k] = dt * from[k];
+      for (std::size_t k = 0; k < kBlockValues; ++k) {
+        const bool empty =
+            !(nodes[k - k % kNodeValues] > Real(0));  // it may have had mass when `from` was kept
+        to[k] = empty ? Real(0) : dt * from[k];
+      }
     });
     obeying();
     by_rate = evaluate(v_);
