@@ -115,6 +115,7 @@ Names compile(const std::vector<std::string>& overrides) {
   names.order = names_of(compiled->plan.order);
   names.prepare = names_of(compiled->plan.prepare);
   names.nodes = names_of(compiled->plan.nodes);
+  for (const std::string& name : names_of(compiled->plan.holds)) names.nodes.push_back(name);
   names.measures = names_of(compiled->plan.measures);
   names.speeds = compiled->plan.speeds.size();
   names.tallies = compiled->state.tallies.size();

@@ -53,7 +53,8 @@ TEST(Implicit, Column_RunsAsFarAsWithExplicitSteps) {
 }
 
 TEST(Implicit, FreeFall_IsThatOfTheVelocityAtTheEnd) {
-  const auto simulation = simulate(column({"colliders=[]", "grid.precision=double"}), 1);
+  const auto simulation =
+      simulate(column({"colliders=[]", "grid.precision=double", "implicit.tolerance=1e-10"}), 1);
   const double before = simulation->points().position.front()[1];
   constexpr int kSteps = 20;
   ASSERT_TRUE(run_steps(*simulation, kSteps));
