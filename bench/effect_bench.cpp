@@ -107,7 +107,7 @@ Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& argume
   return costs;
 }
 
-std::string to_cost_table(const std::vector<EffectCost>& costs) {
+std::string to_cost_rows(const std::vector<EffectCost>& costs) {
   std::vector<double> bare;
   std::vector<std::pair<std::string, double>> dearest;
   for (const EffectCost& cost : costs) {
@@ -118,25 +118,13 @@ std::string to_cost_table(const std::vector<EffectCost>& costs) {
     dearest.back().second = std::max(dearest.back().second, more);
   }
   dearest.emplace(dearest.begin(), "step", median(bare));
-  std::string text =
-      R"(// Repose: what was measured, by `effect_bench --costs engine/base/cost_table.h`, which writes this file.
-#pragma once
-
-namespace repose {
-
-struct Cost {
-  const char* what;    ///< "step", or the name of an effect
-  double nanoseconds;  ///< per particle and step, single precision; of an effect, beyond the bare step
-};
-
-inline constexpr Cost kCosts[] = {
-)";
+  std::string text;
   for (const auto& [what, nanoseconds] : dearest) {
     char line[128];
     std::snprintf(line, sizeof line, "    {\"%s\", %.1f},\n", what.c_str(), nanoseconds);
     text += line;
   }
-  return text + "};\n\n}  // namespace repose\n";
+  return text;
 }
 
 std::string to_markdown(const std::vector<EffectCost>& costs, const EffectBenchArguments& arguments) {

@@ -38,8 +38,8 @@ struct EffectCost {
 /// Errors: 65, 70 of the scenes; 64 for an effect that is not in the list.
 Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& arguments);
 
-/// engine/base/cost_table.h: the bare step, and of each effect its dearest example.
-std::string to_cost_table(const std::vector<EffectCost>& costs);
+/// The rows of engine/base/costs.h: the bare step, and of each effect its dearest example.
+std::string to_cost_rows(const std::vector<EffectCost>& costs);
 
 /// The table of docs/effects.md.
 std::string to_markdown(const std::vector<EffectCost>& costs, const EffectBenchArguments& arguments);

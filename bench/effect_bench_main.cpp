@@ -11,33 +11,33 @@
 namespace repose {
 namespace {
 
-constexpr const char* kBegin = "<!-- effect_bench: begin -->\n";
-constexpr const char* kEnd = "<!-- effect_bench: end -->\n";
+/// The lines that a file holds what was measured between.
+struct Marks {
+  std::string begin, end;
+};
+const Marks kPageMarks{"<!-- effect_bench: begin -->\n", "<!-- effect_bench: end -->\n"};
+const Marks kCostMarks{"    // effect_bench: begin\n", "    // effect_bench: end\n"};
 
-Result<void> write_text(const std::string& path, const std::string& text) {
-  auto out = AtomicFile::create(path);
-  if (!out) return out.error();
-  if (auto written = out->write(text.data(), text.size()); !written) return written;
-  return out->commit();
-}
-
-/// Puts the table between its two marks in a page.
-Result<void> put_into(const std::string& path, const std::string& table) {
+/// Puts text between the marks of a file.
+Result<void> put_into(const std::string& path, const Marks& marks, const std::string& text) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{ErrorKind::kNoInput, "cannot be read", path};
   std::string page{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
+  const std::size_t begin = page.find(marks.begin), end = page.find(marks.end);
   if (begin == std::string::npos || end == std::string::npos || end < begin) {
     return Error{ErrorKind::kBadScene,
-                 std::string("has no lines ") + kBegin + "and " + kEnd + "to put a table between", path};
+                 "has no lines " + marks.begin + "and " + marks.end + "to put figures between", path};
   }
-  page.replace(begin, end - begin, kBegin + table);
-  return write_text(path, page);
+  page.replace(begin, end - begin, marks.begin + text);
+  auto out = AtomicFile::create(path);
+  if (!out) return out.error();
+  if (auto written = out->write(page.data(), page.size()); !written) return written;
+  return out->commit();
 }
 
 int main(int count, char** words) {
   EffectBenchArguments arguments;
-  std::string page, table_path;
+  std::string page, costs_path;
   CLI::App app{"What each effect costs a scene, in time and in bytes per particle", "effect_bench"};
   app.add_option("--scene", arguments.scene, "the base scene (default: probe_column)");
   app.add_option("--set", arguments.overrides, "change the base scene, such as grid.precision=double");
@@ -46,7 +46,7 @@ int main(int count, char** words) {
   app.add_option("--pairs", arguments.pairs, "pairs of turns (default 7)")->check(CLI::Range(1, 1000));
   app.add_option("--threads", arguments.threads, "threads (default 1)")->check(CLI::Range(1, 1024));
   app.add_option("--page", page, "put the table into this page, docs/effects.md");
-  app.add_option("--costs", table_path, "write what forecasts use, engine/base/cost_table.h");
+  app.add_option("--costs", costs_path, "put what forecasts use into this file, engine/base/costs.h");
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
@@ -56,14 +56,14 @@ int main(int count, char** words) {
   const auto costs = bench_effects(arguments);
   if (!costs) return fail(costs.error());
   const std::string table = to_markdown(*costs, arguments);
-  if (!table_path.empty()) {
-    if (auto written = write_text(table_path, to_cost_table(*costs)); !written) return fail(written.error());
+  if (!costs_path.empty()) {
+    if (auto put = put_into(costs_path, kCostMarks, to_cost_rows(*costs)); !put) return fail(put.error());
   }
   if (page.empty()) {
     std::printf("%s", table.c_str());
     return 0;
   }
-  if (auto put = put_into(page, table); !put) return fail(put.error());
+  if (auto put = put_into(page, kPageMarks, table); !put) return fail(put.error());
   return 0;
 }
 

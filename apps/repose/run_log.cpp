@@ -151,6 +151,10 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   row["dt"]["largest"] = frame.largest_dt;
   row["bound_by"] = limits_json(frame);
   row["redone"] = Json::Int64(frame.redone);
+  if (frame.newton_iterations > 0) {
+    row["newton_iterations"] = Json::Int64(frame.newton_iterations);
+    row["linear_iterations"] = Json::Int64(frame.linear_iterations);
+  }
   row["solver_iterations"] = 0;  // explicit steps solve nothing
   row["seconds"]["wall"] = frame.seconds;
   for (std::size_t k = 0; k < kPhaseNames.size(); ++k)

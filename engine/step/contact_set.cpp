@@ -98,14 +98,6 @@ void ContactSet<Real>::project(std::size_t block, Real* x) const {
 }
 
 template <class Real>
-bool ContactSet<Real>::held(std::size_t block, int index) const {
-  for (const Node& node : nodes_[block]) {
-    if (node.index == index) return node.rank > 0;
-  }
-  return false;
-}
-
-template <class Real>
 void ContactSet<Real>::remember(std::size_t block, const Real* r) {
   for (Node& node : nodes_[block]) {
     for (std::size_t c = 0; c < 3; ++c) {

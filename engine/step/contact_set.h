@@ -23,11 +23,9 @@ class ContactSet {
   void obey(std::size_t block, Real* v) const;
   /// Takes from a block's vectors, [0, x] each, all that lies along directions that are held.
   void project(std::size_t block, Real* x) const;
-  /// Whether a node is held along any direction.
-  bool held(std::size_t block, int node) const;
   /// Keeps the residual of held nodes, before it is projected: the impulse that holds them.
   void remember(std::size_t block, const Real* r);
-  /// The impulses that were remembered, node by node of `held_nodes`.
+  /// Calls visit(node, impulse) for the nodes that are held, with what was remembered.
   template <class Visit>
   void for_each_reaction(std::size_t block, Visit visit) const {
     for (const Node& node : nodes_[block]) {

@@ -13,8 +13,7 @@ namespace repose {
 /// What stands in for the inverse of the tangent in the norm of the linear solves.
 enum class Preconditioner {
   kNone,
-  kMass,   ///< 1 / m of each node
-  kBlock,  ///< the inverse of each node's own 3x3 block
+  kMass,  ///< 1 / m of each node
 };
 
 /// Whether a step is solved for, and by which means.
@@ -25,7 +24,6 @@ struct ImplicitSettings {
   std::int64_t newton_iterations = 40;
   std::int64_t krylov_iterations = 2000;  ///< in one Newton iteration
   std::int64_t directions = 40;           ///< that the solver of the exact mode keeps
-  bool histories = false;                 ///< whether reports hold the residual of each iteration
   UnilateralConstants<double> unilateral{-3e-3, 3e-3, 1e-2};
 };
 

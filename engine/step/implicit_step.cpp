@@ -270,7 +270,7 @@ typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve(double share, Vect
     for (std::size_t k = 0; k < kBlockValues; ++k) right[k] = -r[k];
   });
   const auto& settings = implicit_.settings;
-  const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), settings.histories};
+  const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), false};
   SolveReport report;
   if (settings.mode == TangentMode::kExact) {
     if (!general_) general_.emplace(system_, static_cast<int>(settings.directions));

@@ -1,6 +1,7 @@
 // Repose tests: implicit steps solve what they promise: free fall and rest as explicit ones, the run-out of a
 // column whatever the step where sand yields within the solve, and the same bits over threads and checkpoints.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -64,6 +65,8 @@ TEST(Implicit, FreeFall_IsThatOfTheVelocityAtTheEnd) {
 }
 
 TEST(Implicit, ThreadsAndCheckpoints_SameBits) {
+  // Without this the library would never start more threads than the machine has cores.
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 7);
   for (const char* mode : {"exact", "projected"}) {
     const Scene scene = column({std::string("implicit.mode=") + mode});
     const auto one = simulate(scene, 1);
