@@ -70,6 +70,12 @@ constexpr Choice kTangentModeChoices[] = {
     {"unilateral", "an energy without tension within the solve, sand yields afterwards"},
 };
 
+constexpr Choice kLinearMethods[] = {
+    {"by_mode", "generalized_conjugate_residual for mode exact, conjugate_residual for the others"},
+    {"conjugate_residual", "for symmetric tangents"},
+    {"generalized_conjugate_residual", "for any; keeps some directions"},
+};
+
 constexpr Choice kPreconditioners[] = {
     {"none", "nothing"},
     {"mass", "one over the mass of each node"},
@@ -117,6 +123,11 @@ void describe(Fields& fields, GridDescription& grid) {
 
 void describe(Fields& fields, ImplicitSettings& implicit) {
   fields.choice("mode", implicit.mode, kTangentModeChoices, "how sand answers within the solve");
+  fields.choice("method", implicit.method, kLinearMethods, "how linear systems are solved");
+  fields.check(implicit.mode != TangentMode::kExact || implicit.method != LinearMethod::kConjugateResidual,
+               "method",
+               "the tangent of mode exact is not symmetric, and conjugate_residual would not solve it; use "
+               "generalized_conjugate_residual, or mode projected, which has the symmetric part");
   fields.choice("preconditioner", implicit.preconditioner, kPreconditioners,
                 "what stands in for the inverse of the tangent");
   fields.number("tolerance", implicit.tolerance,
@@ -129,7 +140,7 @@ void describe(Fields& fields, ImplicitSettings& implicit) {
   fields.integer("krylov_iterations", implicit.krylov_iterations,
                  {.meaning = "at most, of one linear solve", .low = 1.0, .high = 1.0e6});
   fields.integer("directions", implicit.directions,
-                 {.meaning = "that the solver of mode exact keeps; two vectors of nodes each",
+                 {.meaning = "that generalized_conjugate_residual keeps; two vectors of nodes each",
                   .low = 1.0,
                   .high = 1000.0});
   bool given = false;

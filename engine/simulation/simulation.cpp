@@ -36,7 +36,7 @@ std::string describe_offender(const Offender& offender, const StepReport& report
 std::string describe_unsolved(const StepReport& report) {
   const NewtonReport& newton = report.implicit->newton;
   const std::string why[] = {
-      "", "it needs more than implicit.newton_iterations", "no step along its direction lowers the residual",
+      "", "", "it needs more than implicit.newton_iterations", "no step along its direction lowers the residual",
       std::string("the linear solver gave up (") + status_name(report.implicit->linear) + ")",
       "the residual has no value where it starts"};
   char text[512];
@@ -45,7 +45,7 @@ std::string describe_unsolved(const StepReport& report) {
       "no velocities solve a step, even one of %.3g s: %s (%d iterations, residual %.3g of %.3g asked); a "
       "smaller time.max_step, a larger implicit.tolerance or grid.precision double may help",
       report.dt, why[static_cast<int>(newton.end)].c_str(), newton.iterations, newton.last,
-      report.implicit->tolerance);
+      newton.tolerance);
   return text;
 }
 

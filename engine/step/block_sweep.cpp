@@ -29,10 +29,8 @@ void BlockSweep<Real>::gather_gradient(Chunk<Real>& chunk) const {
 }
 
 template <class Real>
-void BlockSweep<Real>::gather_whole_gradient(Chunk<Real>& chunk, ImplicitScratch<Real>& own) const {
-  gather_gradient(chunk);
-  gather(chunk, own.begin.data(), own.gradient.data());
-  for (std::size_t k = 0; k < kAffineComponents * kChunk; ++k) chunk.scratch.gradient[k] += own.gradient[k];
+void BlockSweep<Real>::gather_base_gradient(const Chunk<Real>& chunk, ImplicitScratch<Real>& own) const {
+  gather(chunk, own.base.data(), own.gradient.data());
 }
 
 template <class Real>

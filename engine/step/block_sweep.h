@@ -17,8 +17,8 @@ struct ImplicitScratch {
   AlignedArray<Real> arena{kArenaValues};                   ///< what particles add to nodes
   AlignedArray<Real> strain{kStrainComponents * kChunk};    ///< trial strain
   AlignedArray<Real> matrix{kAffineComponents * kChunk};    ///< S or its change, by rows
-  AlignedArray<Real> begin{kArenaValues};                   ///< v^n of the nodes
-  AlignedArray<Real> gradient{kAffineComponents * kChunk};  ///< of v^n
+  AlignedArray<Real> base{kArenaValues};                    ///< a second vector of the nodes, such as v^n
+  AlignedArray<Real> gradient{kAffineComponents * kChunk};  ///< of that one
 };
 
 template <class Real>
@@ -51,18 +51,16 @@ class BlockSweep {
     return sum;
   }
 
-  /// Whether a sweep has v^n at hand.
-  enum class Base { kNone, kBegin };
-
   /// Calls body(set, chunk, own) for all particles, with the nodes of `from` in the arena of the chunk's
-  /// scratch. What the body adds to the arena of `own` goes to `to`, which is cleared before.
+  /// scratch, and those of `base`, if there is one, in own.base. What the body adds to the arena of `own` goes
+  /// to `to`, which is cleared before.
   template <class Body>
-  void over_particles(const Vector& from, Vector& to, Base base, Body body);
+  void over_particles(const Vector& from, const Vector* base, Vector& to, Body body);
 
   /// The gradient of the arena's vectors at the particles of a chunk, in chunk.moving_gradient.
   void gather_gradient(Chunk<Real>& chunk) const;
-  /// The same with that of v^n added.
-  void gather_whole_gradient(Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
+  /// That of the base, in own.gradient.
+  void gather_base_gradient(const Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
   /// Adds -scale S g_i to the nodes, S in own.matrix.
   void push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const;
 
@@ -81,7 +79,7 @@ class BlockSweep {
 
 template <class Real>
 template <class Body>
-void BlockSweep<Real>::over_particles(const Vector& from, Vector& to, Base base, Body body) {
+void BlockSweep<Real>::over_particles(const Vector& from, const Vector* base, Vector& to, Body body) {
   State<Real>& state = *state_;
   for_each_block([&](std::size_t block) { std::memset(to.block(block), 0, kBlockValues * sizeof(Real)); });
   const auto& stencil = plan_.kernels->stencil[plan_.transfer.stencil];
@@ -93,18 +91,18 @@ void BlockSweep<Real>::over_particles(const Vector& from, Vector& to, Base base,
       ImplicitScratch<Real>& own = own_[thread];
       const auto owner = static_cast<std::size_t>(owners[i]);
       const auto next = static_cast<std::size_t>(i + 1 < owners.size() ? owners[i + 1] : owners[i]);
-      const Real *read[kNeighbours], *begin[kNeighbours];
+      const Real *read[kNeighbours], *second[kNeighbours];
       Real* write[kNeighbours];
       const auto neighbours = state.grid.neighbours(owner);
       for (std::size_t n = 0; n < kNeighbours; ++n) {
         const bool there = neighbours[n] >= 0;
         read[n] = there ? from.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
-        begin[n] = there ? state.before_forces.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
+        second[n] = there && base ? base->block(static_cast<std::size_t>(neighbours[n])) : nullptr;
         write[n] = there ? to.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
       }
       const std::uint64_t rows = state.rows_touched[owner];
       stencil.load_arena(scratch.arena.data(), rows, read);
-      if (base == Base::kBegin) stencil.load_arena(own.begin.data(), rows, begin);
+      if (base) stencil.load_arena(own.base.data(), rows, second);
       std::memset(own.arena.data(), 0, kArenaValues * sizeof(Real));
       for_each_chunk(state, owner, next, dt_, scratch,
                      [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });

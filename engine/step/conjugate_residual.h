@@ -15,6 +15,7 @@ template <LinearSystem System>
 class ConjugateResidual {
  public:
   using Vector = typename System::Vector;
+  static constexpr bool kSymmetric = true;  ///< whether it needs a symmetric A
 
   explicit ConjugateResidual(const System& system)
       : r_(system.vector()),

@@ -7,6 +7,10 @@
 //
 // When as many directions are kept as there is room for, the oldest goes. Starting over instead would throw all
 // away, and on a symmetric A, which needs only the newest, it would be slower than conjugate residual.
+//
+// Where r^T P A P r is next to zero, which an indefinite A allows, the direction made of P r leads nowhere and
+// the next residual would make it again. The next direction is then made of P A p instead, as in Orthodir
+// (Young and Jea 1980), which spans the same space and has no such breakdown.
 #pragma once
 
 #include "engine/step/krylov.h"
@@ -20,6 +24,8 @@ class GeneralizedConjugateResidual {
  public:
   using Vector = typename System::Vector;
 
+  static constexpr bool kSymmetric = false;  ///< whether it needs a symmetric A
+
   /// Keeps the last `directions`, at least one.
   GeneralizedConjugateResidual(const System& system, int directions)
       : r_(system.vector()), z_(system.vector()), s_(system.vector()) {
@@ -32,11 +38,13 @@ class GeneralizedConjugateResidual {
     ResidualWatch watch(stop, std::numeric_limits<typename System::Real>::epsilon());
     watch.begin(true_residual(system, b, x, r_, z_));
     std::size_t made = 0;
+    bool leads = true;
     while (!watch.ended()) {
-      iterate(system, x, watch, made++);
+      leads = iterate(system, x, watch, leads ? z_ : s_, made++);
       if (!watch.doubts()) continue;
       watch.correct(true_residual(system, b, x, r_, z_));
       made = 0;
+      leads = true;
     }
     return watch.report();
   }
@@ -47,12 +55,14 @@ class GeneralizedConjugateResidual {
     double qq;    // q^T P q
   };
 
-  /// p = z + sum of beta_j p_j with q = A p conjugate to every q_j, in the norm of P; then the best step along
-  /// it.
-  void iterate(System& system, Vector& x, ResidualWatch& watch, std::size_t made) {
+  static constexpr double kNowhere = 1e-3;  // cosine between r and q
+
+  /// p = seed + sum of beta_j p_j with q = A p conjugate to every q_j, in the norm of P; then the best step
+  /// along it. Returns whether it led anywhere; if not, s is P A p.
+  bool iterate(System& system, Vector& x, ResidualWatch& watch, const Vector& seed, std::size_t made) {
     auto& [p, q, qq] = kept_[made % kept_.size()];
-    system.copy(z_, p);
-    system.apply(z_, q);
+    system.copy(seed, p);
+    system.apply(p, q);
     system.precondition(q, s_);
     const double ww = system.dot(q, s_);
     for (std::size_t j = made - std::min(made, kept_.size() - 1); j < made; ++j) {
@@ -64,17 +74,26 @@ class GeneralizedConjugateResidual {
     system.precondition(q, s_);
     qq = system.dot(q, s_);
     const double zq = system.dot(z_, q);
-    if (watch.dead_end(zq, qq, ww)) return;
+    const bool from_residual = &seed == &z_, nowhere = std::abs(zq) <= kNowhere * watch.norm() * std::sqrt(qq);
+    if (nowhere && qq > 0.0 && !(from_residual && watch.singular(zq, ww)) && blind_ + 1 < kept_.size()) {
+      ++blind_;
+      watch.advance(watch.norm() * watch.norm());
+      return false;
+    }
+    blind_ = 0;
+    if (watch.dead_end(zq, qq, ww)) return true;
 
     const double alpha = zq / qq;
     system.add(alpha, p, x);
     system.add(-alpha, q, r_);
     system.add(-alpha, s_, z_);
     watch.advance(system.dot(r_, z_));
+    return true;
   }
 
   Vector r_, z_, s_;             // residual, P r, P q
   std::vector<Direction> kept_;  // direction k is in k modulo their number
+  std::size_t blind_ = 0;        // directions in a row that led nowhere
 };
 
 }  // namespace repose

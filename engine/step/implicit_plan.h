@@ -16,16 +16,30 @@ enum class Preconditioner {
   kMass,  ///< 1 / m of each node
 };
 
+/// Which method solves the linear systems.
+enum class LinearMethod {
+  kByMode,                        ///< the second for the exact mode, the first for the others
+  kConjugateResidual,             ///< short recurrence, for symmetric tangents
+  kGeneralizedConjugateResidual,  ///< keeps directions, for any
+};
+
 /// Whether a step is solved for, and by which means.
 struct ImplicitSettings {
   TangentMode mode = TangentMode::kExact;
+  LinearMethod method = LinearMethod::kByMode;
   Preconditioner preconditioner = Preconditioner::kMass;
   double tolerance = 1e-3;  ///< of the residual, over the larger of outer and inner impulses of the step
   std::int64_t newton_iterations = 40;
   std::int64_t krylov_iterations = 2000;  ///< in one Newton iteration
-  std::int64_t directions = 40;           ///< that the solver of the exact mode keeps
+  std::int64_t directions = 4;            ///< that generalised conjugate residual keeps
   UnilateralConstants<double> unilateral{-3e-3, 3e-3, 1e-2};
 };
+
+/// Whether linear systems are solved by a method for symmetric ones.
+inline bool symmetric(const ImplicitSettings& settings) {
+  if (settings.method != LinearMethod::kByMode) return settings.method == LinearMethod::kConjugateResidual;
+  return settings.mode != TangentMode::kExact;
+}
 
 /// What keeps one node from moving freely.
 template <class Real>

@@ -1,7 +1,11 @@
 #include "engine/step/implicit_step.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+
+#include "engine/step/inversion.h"
 
 namespace repose {
 namespace {
@@ -60,13 +64,12 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   const auto& settings = implicit_.settings;
   NewtonStop stop;
   stop.iterations = static_cast<int>(settings.newton_iterations);
-  stop.scale = scale_;
-  report.tolerance = stop.tolerance = settings.tolerance * scale_;
+  stop.tolerance = settings.tolerance;
   report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
   linear_ = SolveStatus::kConverged;
-  report.newton = newton(*this, v_, step_, trial_, stop);
+  report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve();
   report.linear = linear_;
-  if (report.newton.end == NewtonEnd::kConverged) publish(v_);
+  if (solved(report.newton.end)) publish(v_);
   return report;
 }
 
@@ -97,6 +100,7 @@ void ImplicitStep<Real>::start() {
       contacts_.obey(b, v_.block(b));
     });
   };
+  scale_ = std::numeric_limits<double>::infinity();
   std::optional<double> by_rate;
   if (accelerated_) {
     const Real dt = sweep_.dt();
@@ -117,7 +121,6 @@ void ImplicitStep<Real>::start() {
   sweep_.for_each_block([&](std::size_t b) { std::memset(v_.block(b), 0, kBlockValues * sizeof(Real)); });
   obeying();
   const auto at_rest = evaluate(v_);
-  scale_ = mass_norm_of_forces();
   if (!by_rate || (at_rest && *at_rest <= *by_rate)) return;
   std::swap(v_, trial_);
   obeying();
@@ -143,7 +146,9 @@ template <class Real>
 MaterialInput<Real> ImplicitStep<Real>::try_strain(std::size_t set, Chunk<Real>& chunk,
                                                    ImplicitScratch<Real>& own) const {
   const SetResponse<Real>& response = implicit_.sets[set];
-  sweep_.gather_whole_gradient(chunk, own);
+  sweep_.gather_gradient(chunk);
+  sweep_.gather_base_gradient(chunk, own);
+  for (std::size_t k = 0; k < kAffineComponents * kChunk; ++k) chunk.scratch.gradient[k] += own.gradient[k];
   MaterialInput<Real> in{};
   in.constants = response.constants.get();
   in.dt = sweep_.dt();
@@ -184,7 +189,7 @@ bool ImplicitStep<Real>::stress(std::size_t set, Chunk<Real>& chunk, ImplicitScr
 template <class Real>
 std::optional<double> ImplicitStep<Real>::evaluate(const Vector& v) {
   std::atomic<bool> sound = true;
-  sweep_.over_particles(v, residual_, BlockSweep<Real>::Base::kBegin,
+  sweep_.over_particles(v, &sweep_.state().before_forces, residual_,
                         [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
                           if (!stress(k, chunk, own)) sound.store(false, std::memory_order_relaxed);
                           sweep_.push(chunk, own, static_cast<double>(sweep_.dt()) * chunk.set.particle_volume);
@@ -200,7 +205,9 @@ std::optional<double> ImplicitStep<Real>::evaluate(const Vector& v) {
     }
     return part;
   });
-  return std::isfinite(sum) ? std::optional<double>(std::sqrt(sum)) : std::nullopt;
+  if (!std::isfinite(sum)) return std::nullopt;
+  scale_ = std::min(scale_, mass_norm_of_forces());
+  return std::sqrt(sum);
 }
 
 /// dt f -> r = m (dv - (v^free - v^n)) - dt f, less what contacts bear.
@@ -228,8 +235,9 @@ void ImplicitStep<Real>::finish_residual(std::size_t block, const Real* v, Real*
   contacts_.project(block, r);
 }
 
-/// The larger of the outer and the inner impulses of the step, in the norm of the inverse mass; after
-/// evaluate().
+/// The larger of the outer and the inner impulses of the step, in the norm of the inverse mass, at the
+/// velocities evaluated last. Of a stiff body it is large far from the solution: what counts is what acts at
+/// it.
 template <class Real>
 double ImplicitStep<Real>::mass_norm_of_forces() {
   double inner = 0.0;
@@ -252,7 +260,7 @@ double ImplicitStep<Real>::mass_norm_of_forces() {
 template <class Real>
 void ImplicitStep<Real>::linearize(const Vector& v) {
   const auto mode = static_cast<std::size_t>(implicit_.settings.mode);
-  sweep_.over_particles(v, right_, BlockSweep<Real>::Base::kBegin,
+  sweep_.over_particles(v, &sweep_.state().before_forces, right_,
                         [&](std::size_t k, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
                           const MaterialInput<Real> in = try_strain(k, chunk, own);
                           const SetResponse<Real>& response = implicit_.sets[k];
@@ -270,18 +278,57 @@ typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve(double share, Vect
     for (std::size_t k = 0; k < kBlockValues; ++k) right[k] = -r[k];
   });
   const auto& settings = implicit_.settings;
-  const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), false};
+  // A breakdown late in a solve still leaves a step worth taking.
+  constexpr double kEnough = 0.5;
+  const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), false, kEnough};
   SolveReport report;
-  if (settings.mode == TangentMode::kExact) {
-    if (!general_) general_.emplace(system_, static_cast<int>(settings.directions));
-    report = general_->solve(system_, right_, step, stop);
-  } else {
+  if (symmetric(settings)) {
     if (!symmetric_) symmetric_.emplace(system_);
     report = symmetric_->solve(system_, right_, step, stop);
+  } else {
+    using General = GeneralizedConjugateResidual<TangentSystem<Real>>;
+    if (!general_) general_.emplace(system_, General(system_, static_cast<int>(settings.directions)));
+    report = general_->solve(system_, right_, step, stop);
   }
   if (!report.converged()) linear_ = report.status;
-  const bool best_so_far = report.status == SolveStatus::kCapped || report.status == SolveStatus::kStagnated;
+  const bool best_so_far = report.status == SolveStatus::kCapped || report.status == SolveStatus::kStagnated ||
+                           report.final_norm <= kEnough * report.initial_norm;
   return {report.iterations, report.converged() || best_so_far};
+}
+
+template <class Real>
+bool ImplicitStep<Real>::has_energy() const {
+  return implicit_.settings.mode == TangentMode::kLagged || implicit_.settings.mode == TangentMode::kUnilateral;
+}
+
+/// Each particle's own bound, from the gradients here and along the step.
+template <class Real>
+double ImplicitStep<Real>::reach(const Vector& v, const Vector& step) {
+  constexpr double kLeast = 0.02;  // twice what stress() refuses
+  Vector &here = right_, &unused = residual_;
+  system_.copy(v, here);
+  system_.add(1.0, sweep_.state().before_forces, here);
+  sweep_.for_each_block([&](std::size_t b) {
+    Real* const values = here.block(b);
+    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) values[at] = Real(0);
+  });
+  std::vector<double> least(sweep_.state().grid.owners().size(), 1.0);
+  sweep_.over_particles(step, &here, unused, [&](std::size_t, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+    sweep_.gather_gradient(chunk);
+    sweep_.gather_base_gradient(chunk, own);
+    const double dt = static_cast<double>(sweep_.dt());
+    double& length = least[chunk.owner];
+    for (std::size_t p = 0; p < chunk.particles.count; ++p) {
+      Mat3 a = Mat3::Identity(), b = Mat3::Zero();
+      for (std::size_t k = 0; k < kAffineComponents; ++k) {
+        const auto row = static_cast<Eigen::Index>(k / 3), column = static_cast<Eigen::Index>(k % 3);
+        a(row, column) += dt * static_cast<double>(own.gradient[k * kChunk + p]);
+        b(row, column) = dt * static_cast<double>(chunk.moving_gradient[k][p]);
+      }
+      length = std::min(length, length_to_determinant(a, b, kLeast));
+    }
+  });
+  return *std::min_element(least.begin(), least.end());
 }
 
 template <class Real>

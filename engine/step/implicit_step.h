@@ -9,7 +9,6 @@
 
 #include <optional>
 
-#include "engine/step/generalized_conjugate_residual.h"
 #include "engine/step/linear_solve.h"
 #include "engine/step/newton.h"
 #include "engine/step/tangent_system.h"
@@ -18,8 +17,7 @@ namespace repose {
 
 /// What a solve came to.
 struct ImplicitReport {
-  NewtonReport newton;
-  double tolerance = 0.0;                        ///< |r| that was asked for, kg^1/2 m/s
+  NewtonReport newton;                           ///< with |r| in kg^1/2 m/s
   std::int64_t unknowns = 0;                     ///< velocity components that were solved for
   SolveStatus linear = SolveStatus::kConverged;  ///< of the last linear solve that failed, if any did
 };
@@ -53,6 +51,10 @@ class ImplicitStep {
     bool usable() const { return good; }
   };
   Solved solve(double share, Vector& step);
+  double scale() const { return scale_; }
+  bool has_energy() const;
+  double slope(const Vector& step) { return system_.dot(residual_, step); }
+  double reach(const Vector& v, const Vector& step);
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
@@ -74,12 +76,12 @@ class ImplicitStep {
   ContactSet<Real> contacts_;
   TangentSystem<Real> system_;
   std::optional<LinearSolve<TangentSystem<Real>>> symmetric_;
-  std::optional<GeneralizedConjugateResidual<TangentSystem<Real>>> general_;
+  std::optional<LinearSolve<TangentSystem<Real>, GeneralizedConjugateResidual<TangentSystem<Real>>>> general_;
 
   // Unknown is dv = v - v^n: what is small beside v keeps its digits in single precision.
   Vector v_, step_, trial_, residual_, right_;
-  bool accelerated_ = false;  // whether the last step is known
-  double scale_ = 1.0;
+  bool accelerated_ = false;   // whether the last step is known
+  double scale_ = 1.0;         // the larger of outer and inner impulses, the least that was seen in this solve
   std::vector<double> inner_;  // per block: |dt f_int|^2 in the norm of the inverse mass
   std::int64_t orders_ = -1;   // of the topology that vectors are made for
   SolveStatus linear_ = SolveStatus::kConverged;

@@ -44,6 +44,7 @@ struct Stop {
   double relative = 0.0;  ///< to the start
   int iterations = 100;   ///< at most
   bool history = false;   ///< whether to report |r|_P of every iteration; allocates
+  double enough = 0.0;    ///< share of the start at which a breakdown needs no lower rung of a ladder
 };
 
 /// How a solve ended.
@@ -180,7 +181,7 @@ class ResidualWatch {
   }
 
  private:
-  static constexpr double kZero = 64.0;   // machine epsilons that count as zero
+  static constexpr double kZero = 64.0;  // machine epsilons that count as zero
   static constexpr double kNoise = 16.0;  // machine epsilons that a product may be off by
 
   void end(SolveStatus status) {

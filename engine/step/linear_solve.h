@@ -1,7 +1,7 @@
-// Repose: a symmetric system solved by whatever it takes. The rungs, each for where the one before breaks down:
-//   1  conjugate residual
+// Repose: a system solved by whatever it takes. The rungs, each for where the one before breaks down:
+//   1  conjugate residual, or its generalised form where A is not symmetric
 //   2  the same from where it was, with r computed anew and no directions: the breakdown may have been rounding
-//   3  the minimal residual method, which breaks down only if A is singular
+//   3  if A is symmetric, the minimal residual method, which breaks down only if A is singular
 //   4  A + delta M for A, delta growing tenfold. A direction still for Newton's method, of a stiffer problem.
 // What none of them solves is reported, and the step is to be redone with a shorter dt. Iterations used up, and
 // residuals that are down to rounding, end the ladder at once: no lower rung does better.
@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "engine/step/conjugate_residual.h"
+#include "engine/step/generalized_conjugate_residual.h"
 #include "engine/step/minimal_residual.h"
 
 namespace repose {
@@ -26,29 +27,33 @@ struct Shifts {
   int count = 5;
 };
 
-/// Keeps seven vectors between solves, and seven more once conjugate residual has broken down.
-template <ShiftableSystem System>
+/// Keeps a vector beside those of its first rung, and seven more once a symmetric one has broken down.
+template <ShiftableSystem System, class First = ConjugateResidual<System>>
 class LinearSolve {
  public:
   using Vector = typename System::Vector;
 
   explicit LinearSolve(const System& system, const Shifts& shifts = {})
-      : shifts_(shifts), conjugate_(system), start_(system.vector()) {}
+      : LinearSolve(system, First(system), shifts) {}
+  LinearSolve(const System& system, First first, const Shifts& shifts = {})
+      : shifts_(shifts), first_(std::move(first)), start_(system.vector()) {}
 
   /// Solves A x = b from the x that is given. Each rung may use all of `stop.iterations`; the report has their
   /// sum. What is not solved leaves x no worse than it was.
   SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
     system.copy(x, start_);
-    SolveReport report = conjugate_.solve(system, b, x, stop);
+    SolveReport report = first_.solve(system, b, x, stop);
     Stop same = stop;  // the tolerance is relative to the start of the first rung
     same.absolute = std::max(stop.absolute, stop.relative * report.initial_norm);
     same.relative = 0.0;
 
-    if (stuck(report)) {
-      if (!minimal_) minimal_.emplace(system);
-      follow(report, SolveRung::kMinimalResidual, minimal_->solve(system, b, x, same));
+    if constexpr (First::kSymmetric) {
+      if (stuck(report, stop)) {
+        if (!minimal_) minimal_.emplace(system);
+        follow(report, SolveRung::kMinimalResidual, minimal_->solve(system, b, x, same));
+      }
     }
-    if (stuck(report)) solve_shifted(system, b, x, same, report);
+    if (stuck(report, stop)) solve_shifted(system, b, x, same, report);
     if (!report.converged() && !(report.final_norm < report.initial_norm)) {
       system.copy(start_, x);
       report.final_norm = report.initial_norm;
@@ -57,8 +62,9 @@ class LinearSolve {
   }
 
  private:
-  static bool stuck(const SolveReport& report) {
-    return report.status == SolveStatus::kBrokeDown || report.status == SolveStatus::kSingular;
+  static bool stuck(const SolveReport& report, const Stop& stop) {
+    return (report.status == SolveStatus::kBrokeDown || report.status == SolveStatus::kSingular) &&
+           report.final_norm > stop.enough * report.initial_norm;
   }
 
   static void follow(SolveReport& report, SolveRung rung, SolveReport next) {
@@ -75,7 +81,7 @@ class LinearSolve {
     for (int k = 0; k < shifts_.count; ++k, shift *= 10.0) {
       system.copy(start_, x);
       system.shift(shift);
-      follow(report, SolveRung::kShifted, conjugate_.solve(system, b, x, stop));
+      follow(report, SolveRung::kShifted, first_.solve(system, b, x, stop));
       report.shift = shift;
       if (report.converged() || report.status == SolveStatus::kNotFinite) break;
     }
@@ -87,7 +93,7 @@ class LinearSolve {
   }
 
   Shifts shifts_;
-  ConjugateResidual<System> conjugate_;
+  First first_;
   std::optional<MinimalResidual<System>> minimal_;
   Vector start_;
 };

@@ -1,13 +1,17 @@
-// Repose: Newton's method with a line search on the norm of the residual, for residuals that are only piecewise
-// smooth and not everywhere defined. Linear solves are inexact (Dembo, Eisenstat, Steihaug 1982), with the
-// share eta = min(0.1, sqrt(|r| / scale)) of the residual left over: no more is solved for than the next
+// Repose: Newton's method with a line search, for residuals that are only piecewise smooth and not everywhere
+// defined. Linear solves are inexact (Dembo, Eisenstat, Steihaug 1982), with the share
+// eta = min(kLoosest, sqrt(|r| / |r_0|)) of the residual left over: no more is solved for than the next
 // linearisation is worth.
 //
 // A problem has
 //   std::optional<double> evaluate(const Vector& v)    |r(v)|; nothing where r is not defined
+//   double scale()                                     what |r| is measured against, after evaluate
+//   bool has_energy()                                  whether r is the gradient of an energy
+//   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
 //   void linearize(const Vector& v)
 //   solve(double share, Vector& step)                  step = -A^-1 r(v), |A step + r| <= share |r|
+//   double reach(const Vector& v, const Vector& step)  the longest length along step at which r is defined
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step
 #pragma once
 
@@ -21,15 +25,18 @@ namespace repose {
 
 enum class NewtonEnd {
   kConverged,
+  kStalled,     ///< within kNearly tolerances, and no nearer: rounding
   kIterations,  ///< the cap was met
-  kNoDescent,   ///< no length along the step lowers the residual
+  kNoDescent,   ///< no length along the step lowers the residual, or the energy
   kUnsolved,    ///< the linear solver gave up
   kUndefined,   ///< the residual has no value at the start
 };
+constexpr bool solved(NewtonEnd end) {
+  return end == NewtonEnd::kConverged || end == NewtonEnd::kStalled;
+}
 
 struct NewtonStop {
-  double tolerance = 0.0;  ///< of |r|
-  double scale = 1.0;      ///< what |r| is measured against in eta
+  double tolerance = 0.0;  ///< of |r|, over the problem's scale
   int iterations = 40;
 };
 
@@ -37,54 +44,92 @@ struct NewtonReport {
   NewtonEnd end = NewtonEnd::kConverged;
   int iterations = 0;
   int linear_iterations = 0;
-  int shortened = 0;               ///< how often a step was halved
+  int shortened = 0;               ///< how often a length was shortened
   int contact_changes = 0;         ///< iterations after which constraints changed
   double first = 0.0, last = 0.0;  ///< |r|
+  double tolerance = 0.0;          ///< of |r|, at the end
   std::vector<double> history;     ///< |r| of each iteration
 };
 
-/// Solves r(v) = 0 from v. Contacts may change during the first half of the iterations, so that they cannot
-/// keep the method going round for ever.
 template <class Problem>
-NewtonReport newton(Problem& problem, typename Problem::Vector& v, typename Problem::Vector& step,
-                    typename Problem::Vector& trial, const NewtonStop& stop) {
-  constexpr int kHalvings = 12;
-  constexpr double kDescent = 1e-4;
-  NewtonReport report;
-  std::optional<double> norm = problem.evaluate(v);
-  if (!norm) return report.end = NewtonEnd::kUndefined, report;
-  report.first = *norm;
-  for (;;) {
-    report.last = *norm;
-    report.history.push_back(*norm);
-    if (*norm <= stop.tolerance) return report;
-    if (report.iterations == stop.iterations) return report.end = NewtonEnd::kIterations, report;
-    ++report.iterations;
+class Newton {
+ public:
+  using Vector = typename Problem::Vector;
 
-    problem.linearize(v);
-    const double eta = std::min(0.1, std::sqrt(*norm / stop.scale));
-    const auto solved = problem.solve(std::max(eta, 0.3 * stop.tolerance / *norm), step);
-    report.linear_iterations += solved.iterations;
-    if (!solved.usable()) return report.end = NewtonEnd::kUnsolved, report;
+  Newton(Problem& problem, Vector& v, Vector& step, Vector& trial, const NewtonStop& stop)
+      : problem_(problem), v_(v), step_(step), trial_(trial), stop_(stop) {}
 
-    double length = 1.0;
-    std::optional<double> next;
-    for (int halving = 0;; ++halving) {
-      problem.take(v, length, step, trial);
-      next = problem.evaluate(trial);
-      if (next && *next <= (1.0 - kDescent * length) * *norm) break;
-      if (halving == kHalvings) return report.end = NewtonEnd::kNoDescent, report;
-      length *= 0.5;
-      ++report.shortened;
+  /// Solves r(v) = 0 from the v that is given. Contacts may change during the first half of the iterations, so
+  /// that they cannot keep the method going round for ever.
+  NewtonReport solve() {
+    std::optional<double> norm = problem_.evaluate(v_);
+    if (!norm) return end(NewtonEnd::kUndefined);
+    report_.first = report_.last = *norm;
+    while (report_.history.push_back(report_.last), report_.last > tolerance()) {
+      if (report_.iterations == stop_.iterations) return end(NewtonEnd::kIterations);
+      ++report_.iterations;
+      if (!direction()) return end(NewtonEnd::kUnsolved);
+      if (!search()) return end(NewtonEnd::kNoDescent);
+      if (2 * report_.iterations > stop_.iterations || !problem_.change_contacts(v_)) continue;
+      ++report_.contact_changes;
+      norm = problem_.evaluate(v_);
+      if (!norm) return end(NewtonEnd::kUndefined);
+      report_.last = *norm;
     }
-    std::swap(v, trial);
-    norm = next;
-    if (2 * report.iterations <= stop.iterations && problem.change_contacts(v)) {
-      ++report.contact_changes;
-      norm = problem.evaluate(v);
-      if (!norm) return report.end = NewtonEnd::kUndefined, report;
-    }
+    return end(NewtonEnd::kConverged);
   }
-}
+
+ private:
+  static constexpr double kLoosest = 0.2;   // looser solves are worth less than they save
+  static constexpr double kDescent = 1e-4;  // share of the promised descent that a length must make good
+  static constexpr double kNearly = 10.0;   // tolerances
+  static constexpr int kLengths = 12;
+
+  NewtonReport end(NewtonEnd how) {
+    const bool found = how == NewtonEnd::kNoDescent || how == NewtonEnd::kUnsolved;
+    report_.end = found && report_.last <= kNearly * tolerance() ? NewtonEnd::kStalled : how;
+    report_.tolerance = tolerance();
+    return std::move(report_);
+  }
+
+  double tolerance() const { return stop_.tolerance * problem_.scale(); }
+
+  bool direction() {
+    problem_.linearize(v_);
+    const double eta = std::min(kLoosest, std::sqrt(report_.last / report_.first));
+    const auto solved = problem_.solve(std::max(eta, 0.3 * tolerance() / report_.last), step_);
+    report_.linear_iterations += solved.iterations;
+    return solved.usable();
+  }
+
+  /// The longest of some lengths at which there is descent. Where there is an energy its slope along the step
+  /// tells (Hager and Zhang 2005): near the solution the energy itself is lost in rounding.
+  bool search() {
+    const double before = problem_.has_energy() ? problem_.slope(step_) : 0.0;
+    double length = 1.0;
+    for (int k = 0; k < kLengths; ++k) {
+      problem_.take(v_, length, step_, trial_);
+      const std::optional<double> norm = problem_.evaluate(trial_);
+      if (norm && descends(*norm, length, before)) {
+        std::swap(v_, trial_);
+        report_.last = *norm;
+        return true;
+      }
+      length = norm ? 0.5 * length : std::min(0.5 * length, 0.9 * problem_.reach(v_, step_));
+      ++report_.shortened;
+    }
+    return false;
+  }
+
+  bool descends(double norm, double length, double before) {
+    if (norm <= (1.0 - kDescent * length) * report_.last) return true;
+    return before < 0.0 && problem_.slope(step_) <= (1.0 - 2.0 * kDescent) * -before;
+  }
+
+  Problem& problem_;
+  Vector &v_, &step_, &trial_;
+  NewtonStop stop_;
+  NewtonReport report_;
+};
 
 }  // namespace repose

@@ -201,7 +201,7 @@ template <class Real>
 bool Stepper<Real>::solve(State<Real>& state, Real dt, StepReport& report) {
   const PhaseTimer timer(profile_, Phase::kSolve);
   report.implicit = implicit_->solve(state, dt);
-  if (report.implicit->newton.end != NewtonEnd::kConverged) return false;
+  if (!solved(report.implicit->newton.end)) return false;
   for_each_block(state, [&](std::size_t block) {
     NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
     hold_block(nodes);

@@ -31,16 +31,13 @@ Real* TangentSystem<Real>::tangent(std::size_t set, const Chunk<Real>& chunk) {
 template <class Real>
 void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
   const double square_dt = static_cast<double>(sweep_.dt()) * static_cast<double>(sweep_.dt());
-  sweep_.over_particles(x, y, BlockSweep<Real>::Base::kNone,
-                        [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
-                          sweep_.gather_gradient(chunk);
-                          Real* matrix[kAffineComponents];
-                          for (std::size_t k = 0; k < kAffineComponents; ++k)
-                            matrix[k] = own.matrix.data() + k * kChunk;
-                          sweep_.kernels().apply_tangent(tangent(set, chunk), chunk.moving_gradient, matrix,
-                                                         chunk.particles.count);
-                          sweep_.push(chunk, own, square_dt * chunk.set.particle_volume);
-                        });
+  sweep_.over_particles(x, nullptr, y, [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+    sweep_.gather_gradient(chunk);
+    Real* matrix[kAffineComponents];
+    for (std::size_t k = 0; k < kAffineComponents; ++k) matrix[k] = own.matrix.data() + k * kChunk;
+    sweep_.kernels().apply_tangent(tangent(set, chunk), chunk.moving_gradient, matrix, chunk.particles.count);
+    sweep_.push(chunk, own, square_dt * chunk.set.particle_volume);
+  });
   const Real weight = static_cast<Real>(1.0 + shift_);
   sweep_.for_each_block([&](std::size_t b) {
     const Real* const nodes = sweep_.state().nodes.block(b);
