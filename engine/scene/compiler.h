@@ -9,6 +9,7 @@
 
 #include "engine/base/result.h"
 #include "engine/effect/solid.h"
+#include "engine/scene/integrator.h"
 #include "engine/scene/scene.h"
 #include "engine/state/state.h"
 #include "engine/step/step_plan.h"
@@ -26,6 +27,7 @@ struct CompiledScene {
   State<Real> state;
   StepPlan<Real> plan;
   std::vector<Solid> solids;
+  IntegratorChoice integrator;
 };
 
 /// Builds shapes, seeds bodies, lists the passes. Errors: 65 geometry that is wrong or holds no particle, 66 a
