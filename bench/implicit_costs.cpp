@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 
+#include "engine/scene/compiler.h"
 #include "engine/scene/reader.h"
-#include "engine/simulation/simulation.h"
+#include "engine/step/stepper.h"
 
 namespace repose {
 namespace {
@@ -20,49 +22,69 @@ std::string text_of(double value) {
   return text;
 }
 
-Result<std::unique_ptr<Simulation>> make(const ImplicitCostArguments& arguments,
-                                         const std::vector<std::string>& more) {
+Result<Scene> column(const ImplicitCostArguments& arguments, double youngs_modulus, double max_step) {
   const std::string width = text_of(arguments.width), height = text_of(2.0 * arguments.width);
-  ReadOptions reading;
-  reading.overrides = {"bodies.column.shape.upper=[" + width + "," + height + "," + width + "]"};
-  reading.overrides.insert(reading.overrides.end(), more.begin(), more.end());
-  const auto scene = read_scene_text(R"json({"repose": 1, "name": "implicit_costs", "grid": {"spacing": 0.01},
+  return read_scene_text(
+      R"json({"repose": 1, "name": "implicit_costs", "grid": {"spacing": 0.01},
     "materials": {"sand": {"type": "drucker_prager", "friction_angle": 30}},
     "bodies": [{"name": "column", "material": "sand", "shape": {"type": "box", "lower": [0, 0, 0]}}],
     "colliders": [{"name": "floor", "contact": "sticky", "shape": {"type": "plane", "point": [0, -0.005, 0]}},
                   {"name": "wall", "contact": "slip",
                    "shape": {"type": "plane", "point": [-0.005, 0, 0], "normal": [1, 0, 0]}}]})json",
-                                     "implicit_costs.json", ".", reading);
-  if (!scene) return scene.error();
-  SimulationOptions options;
-  options.threads = arguments.threads;
-  return Simulation::create(*scene, options);
+      "implicit_costs.json", ".",
+      {{"bodies.column.shape.upper=[" + width + "," + height + "," + width + "]",
+        "materials.sand.youngs_modulus=" + text_of(youngs_modulus), "time.max_step=" + text_of(max_step)}});
 }
 
-/// ns per particle of a step of dt. Steps that had to be made shorter count by their length.
+/// A step on no frame; its length, s.
+Result<double> advance(Stepper<float>& stepper, State<float>& state) {
+  const StepReport report = stepper.step(state, std::numeric_limits<double>::infinity());
+  if (!report.accepted) {
+    const std::string why = report.offender ? refusal_text(*report.offender) : report.first_refusal;
+    return Error{ErrorKind::kPhysics, "a step was refused: " + why, "implicit_costs"};
+  }
+  state.counters.time += report.dt;
+  return report.dt;
+}
+
+/// ns per particle of a step of dt in sand that flows. Steps that had to be made shorter count by their length.
 Result<double> time_steps(const ImplicitCostArguments& arguments, double youngs_modulus, double dt) {
-  auto made = make(arguments, {"time.integrator=implicit", "time.max_step=" + text_of(dt),
-                               "materials.sand.youngs_modulus=" + text_of(youngs_modulus)});
-  if (!made) return made.error();
-  Simulation& simulation = **made;
-  if (auto first = simulation.step(); !first) return first.error();  // it has no earlier one to begin from
-  const double begin = simulation.counters().time;
+  auto scene = column(arguments, youngs_modulus, dt);
+  if (!scene) return scene.error();
+  auto flowing = compile_scene<float>(*scene, {});
+  scene->time.integrator = Integrator::kImplicit;
+  auto solving = compile_scene<float>(*scene, {});
+  if (!flowing) return flowing.error();
+  if (!solving) return solving.error();
+  State<float>& state = flowing->state;
+  Stepper<float> small(std::move(flowing->plan), arguments.threads);
+  while (state.counters.time < arguments.start) {
+    if (auto done = advance(small, state); !done) return done.error();
+  }
+  state.acceleration.on = true;
+  Stepper<float> large(std::move(solving->plan), arguments.threads);
+  large.follow(state);
+  if (auto first = advance(large, state); !first) return first.error();  // it knows no rate to begin from
+  double made = 0.0, seconds = 0.0;
   const auto start = std::chrono::steady_clock::now();
-  double seconds = 0.0;
   for (int step = 0; step < kLeastSteps || (step < kMostSteps && seconds < arguments.seconds); ++step) {
-    if (auto done = simulation.step(); !done) return done.error();
+    const auto done = advance(large, state);
+    if (!done) return done.error();
+    made += *done;
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  const double steps = (simulation.counters().time - begin) / dt;
-  return 1e9 * seconds / (steps * static_cast<double>(simulation.particles()));
+  return 1e9 * seconds * dt / (made * static_cast<double>(state.particles()));
 }
 
 }  // namespace
 
 Result<std::vector<ImplicitCost>> bench_implicit_costs(const ImplicitCostArguments& arguments) {
-  auto soft = make(arguments, {"materials.sand.youngs_modulus=" + text_of(kSoft)});
+  auto scene = column(arguments, kSoft, 1.0);
+  if (!scene) return scene.error();
+  const auto soft = compile_scene<float>(*scene, {});
   if (!soft) return soft.error();
-  const double soft_step = (*soft)->longest_step();
+  const double soft_step =
+      next_step(soft->plan, soft->state.spacing, Counters{}, std::numeric_limits<double>::infinity()).dt;
   std::vector<ImplicitCost> costs;
   for (const double explicit_steps : arguments.explicit_steps) {
     const double dt = std::min(kLongest, explicit_steps * soft_step);

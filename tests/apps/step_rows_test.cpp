@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "apps/repose/run_log.h"
+#include "engine/scene/reader.h"
 #include "tests/apps/command_probe.h"
 
 namespace repose {
@@ -59,7 +61,9 @@ TEST_F(StepRowsOfARun, Row_HasEveryPromisedField) {
       EXPECT_LE(row["residual"]["last"].asDouble(), row["residual"]["tolerance"].asDouble());
       EXPECT_GE(row["residual"]["first"].asDouble(), row["residual"]["last"].asDouble());
       EXPECT_FALSE(row.isMember("residuals")) << "not asked for";
-      if (at > 0) EXPECT_EQ(row["energy"]["before"], steps[at - 1]["energy"]["after"]);
+      if (at > 0) {
+        EXPECT_EQ(row["energy"]["before"], steps[at - 1]["energy"]["after"]);
+      }
     }
     EXPECT_EQ(newton, frame["newton_iterations"].asInt());
     EXPECT_EQ(linear, frame["linear_iterations"].asInt());
@@ -107,6 +111,52 @@ TEST_F(StepRowsOfARun, Resumed_NoRowIsLostOrDoubled) {
   EXPECT_EQ(more["steps"], whole["steps"]);
   EXPECT_EQ(more["steps_left_out"].asInt(),
             more["frames"][6]["steps"].asInt() + more["frames"][7]["steps"].asInt());
+}
+
+TEST_F(StepRowsOfARun, ResumedWithinAFrame_NoRowIsLostOrDoubled) {
+  const auto scene = read_scene(tiny_scene(R"(, "output": {"steps": true})"),
+                                {{"time.integrator=implicit", "time.max_step=2e-3"}, {}});
+  ASSERT_TRUE(scene) << scene.error().text();
+  const auto simulation = [&] { return std::move(*Simulation::create(*scene, {.threads = 1})); };
+  // One frame, or what there is of it until `last` steps have been made in all.
+  const auto advance = [](RunLog& log, Simulation& run, std::int64_t last) {
+    const std::int64_t before = run.counters().frame;
+    log.begin_steps(run);
+    const auto frame = run.advance_frame([&](const StepReport& step, const Counters& counters) {
+      log.add_step(step, run, counters.frame + 1);
+      return counters.step < last;
+    });
+    ASSERT_TRUE(frame) << frame.error().text();
+    if (frame->frame > before) log.add(*frame, run);
+  };
+  const auto written = [&](RunLog& log, const std::string& name) {
+    EXPECT_TRUE(log.write(path(name)));
+    return read_json(path(name));
+  };
+  constexpr std::int64_t kCut = 13, kNever = 1000;
+  const auto whole = simulation(), first = simulation(), second = simulation();
+  RunLog log(*scene, "standard", *whole), part(*scene, "standard", *first), rest(*scene, "standard", *second);
+  for (int frame = 0; frame < 4; ++frame) advance(log, *whole, kNever);
+  while (first->counters().step < kCut) advance(part, *first, kCut);
+  ASSERT_GT(first->counters().time_in_frame, 0.0) << "it was to be cut within a frame";
+  ASSERT_EQ(written(part, "part.json")["steps"].size(), static_cast<unsigned>(kCut));
+  ASSERT_TRUE(first->save(path("state")));
+  ASSERT_TRUE(second->load(path("state")));
+  rest.continue_from(path("part.json"), second->counters());
+  while (second->counters().frame < 4) advance(rest, *second, kNever);
+  const Json::Value one = written(log, "whole.json"), two = written(rest, "rest.json");
+  EXPECT_GT(one["steps"].size(), static_cast<unsigned>(kCut) + 5u);
+  EXPECT_EQ(two["steps"], one["steps"]);
+  EXPECT_EQ(two["steps_left_out"], 0);
+}
+
+TEST_F(StepRowsOfARun, LongRun_WritesNoMoreThanTheBound) {
+  const Json::Value log = go("out", {"--set", "time.integrator=explicit", "--set", "time.frames=1", "--set",
+                                     "time.frames_per_second=0.25"});
+  EXPECT_EQ(log["steps"].size(), kMostStepRows);
+  EXPECT_GT(log["steps_left_out"].asInt(), 0);
+  EXPECT_EQ(log["steps_left_out"].asInt(), log["frames"][0]["steps"].asInt() - static_cast<int>(kMostStepRows));
+  EXPECT_LT(std::filesystem::file_size(path("out/run.json")), 1000u * kMostStepRows) << "a kilobyte a step";
 }
 
 TEST_F(StepRowsOfARun, ExplicitSteps_HaveNothingOfASolve) {
