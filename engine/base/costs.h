@@ -53,7 +53,7 @@ struct ImplicitCost {
 
 inline constexpr ImplicitCost kImplicitCosts[] = {
     // implicit_costs: begin
-    {1, 1083.0}, {3, 1556.0}, {10, 3186.0}, {30, 13835.0}, {100, 96895.0}, {300, 400000.0},
+    {1, 340.8}, {3, 693.2}, {10, 2134.6}, {30, 8236.8}, {100, 66348.0}, {300, 168473.2},
     // implicit_costs: end
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct CompileOptions {
   Target target = best_target();
   bool allow_outside_paths = false;
   double memory_limit = 0.0;  ///< bytes; 0: 85 % of the machine's memory
+  /// Of implicit steps, by which time.integrator `auto` is decided; none: the committed ones.
+  std::span<const ImplicitCost> implicit_costs = {};
 };
 
 template <class Real>

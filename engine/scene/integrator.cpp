@@ -175,16 +175,17 @@ template <class Real>
 IntegratorChoice choose_integrator(const Compilation<Real>& compilation, State<Real>& state,
                                    const std::vector<Solid>& solids, const StepPlan<Real>& plan) {
   const Integrator asked = compilation.scene.time.integrator;
+  const auto given = compilation.options.implicit_costs;
+  const std::span<const ImplicitCost> costs = given.empty() ? std::span(kImplicitCosts) : given;
   IntegratorChoice choice;
   choice.reason =
       asked == Integrator::kAuto ? "the key 'sleep' goes with explicit steps only" : "as time.integrator says";
   if (asked == Integrator::kExplicit || (asked == Integrator::kAuto && plan.rest)) return choice;
   const StepForecast forecast = repose::forecast(compilation, state, solids, plan);
-  if (asked == Integrator::kAuto) return cheaper_integrator(forecast, kImplicitCosts);
+  if (asked == Integrator::kAuto) return cheaper_integrator(forecast, costs);
   choice.implicit = true;
   choice.step = forecast.implicit_step.dt;
-  choice.nanoseconds =
-      implicit_cost(kImplicitCosts, choice.step / forecast.explicit_step.dt) + forecast.effects_cost;
+  choice.nanoseconds = implicit_cost(costs, choice.step / forecast.explicit_step.dt) + forecast.effects_cost;
   return choice;
 }
 

@@ -5,18 +5,18 @@
 #include <cmath>
 
 #include "engine/base/costs.h"
-#include "engine/scene/integrator.h"
+#include "engine/scene/compiler.h"
 #include "engine/scene/reader.h"
-#include "engine/simulation/simulation.h"
+#include "engine/step/stepper.h"
 
 namespace repose {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// A bed of sand, 8 cells high, on a floor: nothing moves.
-IntegratorChoice choice(std::vector<std::string> overrides) {
+CompiledScene<float> bed(std::vector<std::string> overrides, std::span<const ImplicitCost> costs = {}) {
   overrides.insert(overrides.begin(), "time.integrator=auto");
   const auto scene = read_scene_text(R"json({"repose": 1, "name": "bed", "grid": {"spacing": 0.01},
     "materials": {"sand": {"type": "drucker_prager"}},
@@ -25,9 +25,15 @@ IntegratorChoice choice(std::vector<std::string> overrides) {
     "colliders": [{"name": "floor", "shape": {"type": "plane", "point": [0, 0, 0]}}]})json",
                                      "bed.json", ".", {std::move(overrides), false});
   EXPECT_TRUE(scene) << (scene ? "" : scene.error().text());
-  const auto simulation = Simulation::create(*scene, {.threads = 1});
-  EXPECT_TRUE(simulation) << (simulation ? "" : simulation.error().text());
-  return simulation ? (*simulation)->integrator() : IntegratorChoice{};
+  CompileOptions options;
+  options.implicit_costs = costs;
+  auto compiled = compile_scene<float>(*scene, options);
+  EXPECT_TRUE(compiled) << (compiled ? "" : compiled.error().text());
+  return std::move(*compiled);
+}
+
+IntegratorChoice choice(std::vector<std::string> overrides) {
+  return bed(std::move(overrides)).integrator;
 }
 
 /// The number that stands before `words` in a reason, after `mark`.
@@ -93,10 +99,22 @@ TEST(Integrator, CommittedCosts_AscendAndExceedAnExplicitStep) {
 }
 
 TEST(Integrator, SoftSandInShortFrames_Explicit) {
-  const IntegratorChoice soft = choice({"time.frames_per_second=1000"});
-  EXPECT_FALSE(soft.implicit);
-  EXPECT_THAT(soft.reason, HasSubstr("implicit: 1 step per frame (frame) at "));
-  EXPECT_THAT(soft.reason, ::testing::EndsWith("cheaper: explicit"));
+  const CompiledScene<float> soft = bed({"time.frames_per_second=1000"}, kFlat);
+  EXPECT_FALSE(soft.integrator.implicit);
+  EXPECT_FALSE(soft.plan.implicit);
+  EXPECT_FALSE(soft.state.acceleration.on);
+  EXPECT_THAT(soft.integrator.reason, HasSubstr("explicit: 3 steps per frame (sound) at "));
+  EXPECT_THAT(soft.integrator.reason, HasSubstr("implicit: 1 step per frame (frame) at "));
+  EXPECT_THAT(soft.integrator.reason, EndsWith("cheaper: explicit"));
+  // The same frames, and sand 1e4 times as stiff: only that has changed.
+  const CompiledScene<float> stiff =
+      bed({"time.frames_per_second=1000", "materials.sand.youngs_modulus=3.537e9"}, kFlat);
+  EXPECT_TRUE(stiff.integrator.implicit);
+  EXPECT_TRUE(stiff.plan.implicit);
+  EXPECT_TRUE(stiff.plan.limits.sets.empty()) << "nothing of stiffness bounds its steps";
+  EXPECT_TRUE(stiff.state.acceleration.on);
+  EXPECT_THAT(stiff.integrator.reason, HasSubstr("explicit: 295 steps per frame (sound) at "));
+  EXPECT_THAT(stiff.integrator.reason, EndsWith("cheaper: implicit"));
 }
 
 TEST(Integrator, StiffnessOfTheStiffestSet_IsWeighed) {
