@@ -1,4 +1,4 @@
-// Repose: the words of effect_bench, and how its table gets into a page.
+// Repose: the words of effect_bench, and how its tables get into a page and into what forecasts use.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -6,6 +6,7 @@
 
 #include "apps/repose/command.h"
 #include "bench/effect_bench.h"
+#include "bench/implicit_costs.h"
 #include "engine/io/atomic_file.h"
 
 namespace repose {
@@ -16,6 +17,7 @@ struct Marks {
   std::string begin, end;
 };
 const Marks kPageMarks{"<!-- effect_bench: begin -->\n", "<!-- effect_bench: end -->\n"};
+const Marks kImplicitMarks{"    // implicit_costs: begin\n", "    // implicit_costs: end\n"};
 const Marks kCostMarks{"    // effect_bench: begin\n", "    // effect_bench: end\n"};
 
 /// Puts text between the marks of a file.
@@ -35,6 +37,14 @@ Result<void> put_into(const std::string& path, const Marks& marks, const std::st
   return out->commit();
 }
 
+/// Both tables of the file: effects, and implicit steps.
+Result<void> put_costs(const std::string& path, const std::vector<EffectCost>& effects) {
+  if (auto put = put_into(path, kCostMarks, to_cost_rows(effects)); !put) return put;
+  const auto implicit = bench_implicit_costs({});
+  if (!implicit) return implicit.error();
+  return put_into(path, kImplicitMarks, to_rows(*implicit));
+}
+
 int main(int count, char** words) {
   EffectBenchArguments arguments;
   std::string page, costs_path;
@@ -46,7 +56,9 @@ int main(int count, char** words) {
   app.add_option("--pairs", arguments.pairs, "pairs of turns (default 7)")->check(CLI::Range(1, 1000));
   app.add_option("--threads", arguments.threads, "threads (default 1)")->check(CLI::Range(1, 1024));
   app.add_option("--page", page, "put the table into this page, docs/effects.md");
-  app.add_option("--costs", costs_path, "put what forecasts use into this file, engine/base/costs.h");
+  app.add_option(
+      "--costs", costs_path,
+      "put what forecasts use into this file, engine/base/costs.h; with implicit steps, two minutes more");
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
@@ -57,7 +69,7 @@ int main(int count, char** words) {
   if (!costs) return fail(costs.error());
   const std::string table = to_markdown(*costs, arguments);
   if (!costs_path.empty()) {
-    if (auto put = put_into(costs_path, kCostMarks, to_cost_rows(*costs)); !put) return fail(put.error());
+    if (auto put = put_costs(costs_path, *costs); !put) return fail(put.error());
   }
   if (page.empty()) {
     std::printf("%s", table.c_str());

@@ -4,7 +4,6 @@
 
 #include "apps/repose/command.h"
 #include "apps/repose/measure.h"
-#include "engine/base/costs.h"
 #include "engine/scene/figures.h"
 #include "engine/step/time_step.h"
 
@@ -89,11 +88,11 @@ void print_memory(const Simulation& simulation, double process, double emission)
 
 void print_forecast(const Scene& scene, const Simulation& simulation, double process) {
   const auto particles = static_cast<double>(simulation.particles());
-  const double dt = simulation.longest_step();
+  const IntegratorChoice& integrator = simulation.integrator();
+  const double dt = integrator.step > 0.0 ? integrator.step : simulation.longest_step();
   const double duration = last_frame_time(scene), emitted = emitted_by(scene, duration);
   const double steps = duration / dt, mean = particles + 0.5 * emitted;
-  double nanoseconds = cost_of("step");
-  for (const EffectStatus& effect : effect_status(scene)) nanoseconds += effect.nanoseconds;
+  const double nanoseconds = integrator.nanoseconds > 0.0 ? integrator.nanoseconds : step_cost(scene);
   std::printf("\nforecast\n");
   std::printf("  particles           %zu", simulation.particles());
   if (emitted > 0.0) {
@@ -122,6 +121,8 @@ int plan_command(const SceneArguments& arguments) {
   std::printf("%s: dx %g m, %s precision, %s\n", scene->name.c_str(), scene->grid.spacing,
               scene->grid.precision == Precision::kSingle ? "single" : "double",
               target_name((*simulation)->target()));
+  const IntegratorChoice& integrator = (*simulation)->integrator();
+  std::printf("steps: %s; %s\n", integrator.implicit ? "implicit" : "explicit", integrator.reason.c_str());
   print_effects(*scene, **simulation);
   print_passes(**simulation);
   print_forecast(*scene, **simulation, process);

@@ -75,6 +75,8 @@ class Run {
   int interrupted();
   int stop(Error error);
   void tell(const FrameReport& frame, const Json::Value& row) const;
+  void tell_integrator() const;
+  void tell_redone(const FrameReport& frame, Progress& progress) const;
   void tell_warnings(Progress& progress);
 
   const RunArguments& arguments_;
@@ -92,7 +94,7 @@ Result<void> Run::resume() {
     const std::string path = folder_.checkpoint(frame);
     auto loaded = simulation_->load(path);
     if (loaded) {
-      log_.continue_from(folder_.log(), simulation_->counters().frame);
+      log_.continue_from(folder_.log(), simulation_->counters());
       files_.list_series(log_.frames());
       if (!arguments_.json && !arguments_.quiet)
         std::fprintf(stderr, "repose: resuming after frame %lld%s\n", static_cast<long long>(frame),
@@ -121,8 +123,10 @@ Result<FrameReport> Run::advance(Progress& progress) {
   const Clock clock = clock_of(scene_.time);
   const auto start = std::chrono::steady_clock::now();
   std::int64_t steps = 0;
+  log_.begin_steps(*simulation_);
   return simulation_->advance_frame([&](const StepReport& step, const Counters& counters) {
     ++steps;
+    log_.add_step(step, *simulation_, counters.frame + 1);
     tell_warnings(progress);
     if (progress.visible()) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -166,6 +170,24 @@ void Run::tell(const FrameReport& frame, const Json::Value& row) const {
                 frame.seconds);
     std::fflush(stdout);
   }
+}
+
+/// A choice that the scene has left open.
+void Run::tell_integrator() const {
+  if (arguments_.quiet || arguments_.json || scene_.time.integrator != Integrator::kAuto) return;
+  const IntegratorChoice& integrator = simulation_->integrator();
+  std::fprintf(stderr, "repose: %s steps: %s\n", integrator.implicit ? "implicit" : "explicit",
+               integrator.reason.c_str());
+}
+
+/// Steps that turned out too long cost what they had taken until then.
+void Run::tell_redone(const FrameReport& frame, Progress& progress) const {
+  if (arguments_.quiet || arguments_.json || frame.redone == 0) return;
+  progress.leave();
+  std::fprintf(stderr,
+               "repose: frame %lld: steps were halved %lld time%s and made again, at first because %s\n",
+               static_cast<long long>(frame.frame), static_cast<long long>(frame.redone),
+               frame.redone == 1 ? "" : "s", frame.first_refusal.c_str());
 }
 
 /// As soon as they are known: a run that slows down for ever would not reach the end of its frame.
@@ -238,6 +260,7 @@ int Run::go() {
     return fail(written.error());
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  tell_integrator();
   Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);
   tell_warnings(progress);
   while (simulation_->counters().frame < frames_.last) {
@@ -247,6 +270,7 @@ int Run::go() {
     if (!frame) return stop(frame.error());
     // A signal can come in the last step of a frame: the frame is then whole, and nobody else will write it.
     if (frame->frame > before) {
+      tell_redone(*frame, progress);
       if (auto written = write_frame(*frame); !written) return stop(written.error());
     }
     if (g_signal != 0 && simulation_->counters().frame < frames_.last) return interrupted();

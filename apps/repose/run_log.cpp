@@ -33,10 +33,7 @@ void add_figures(const Diagnostics& d, double spacing, Json::Value& row) {
   row["particles"] = Json::UInt64(d.particles);
   row["mass"] = d.mass;
   row["volume"] = d.volume;
-  row["energy"]["kinetic"] = d.kinetic_energy;
-  row["energy"]["affine"] = d.affine_energy;
-  row["energy"]["elastic"] = d.elastic_energy;
-  row["energy"]["potential"] = d.potential_energy;
+  row["energy"] = energy_json(d);
   row["momentum"] = vector_json(d.momentum);
   row["angular_momentum"] = vector_json(d.angular_momentum);
   row["center_of_mass"] = vector_json(d.center_of_mass);
@@ -112,6 +109,8 @@ RunLog::RunLog(const Scene& scene, const std::string& quality, const Simulation&
   log_["scene"]["spacing"] = scene.grid.spacing;
   log_["scene"]["frames_per_second"] = scene.time.frames_per_second;
   log_["precision"] = scene.grid.precision == Precision::kSingle ? "single" : "double";
+  log_["integrator"]["choice"] = simulation.integrator().implicit ? "implicit" : "explicit";
+  log_["integrator"]["reason"] = simulation.integrator().reason;
   for (const EffectStatus& effect : effect_status(scene)) {
     Json::Value& json = log_["effects"][effect.name];
     json["on"] = effect.on;
@@ -121,15 +120,26 @@ RunLog::RunLog(const Scene& scene, const std::string& quality, const Simulation&
   log_["warnings"] = Json::Value(Json::arrayValue);
   log_["frames"] = Json::Value(Json::arrayValue);
   log_["end"] = "running";
+  if (!scene.output.steps) return;
+  log_["steps"] = Json::Value(Json::arrayValue);
+  count_left_out(0);
+  steps_.emplace(scene.output.residuals);
 }
 
-void RunLog::continue_from(const std::string& path, std::int64_t last) {
+void RunLog::continue_from(const std::string& path, const Counters& last) {
   std::ifstream file(path);
   Json::Value old;
   if (!file || !Json::parseFromStream(Json::CharReaderBuilder(), file, &old, nullptr) || !is_log(old)) return;
   for (const Json::Value& frame : old["frames"]) {
-    if (frame["frame"].asInt64() <= last) log_["frames"].append(frame);
+    if (frame["frame"].asInt64() <= last.frame) log_["frames"].append(frame);
   }
+  if (old["steps"].isArray() && !old["steps"].empty()) {
+    Json::Value& steps = log_["steps"] = Json::Value(Json::arrayValue);
+    for (const Json::Value& step : old["steps"]) {
+      if (step.isObject() && step["step"].isInt64() && step["step"].asInt64() <= last.step) steps.append(step);
+    }
+  }
+  if (log_.isMember("steps")) count_left_out(last.step);
   for (const Json::Value& warning : old["warnings"]) {
     if (warning.isString()) warn(warning.asString());
   }
@@ -139,6 +149,21 @@ void RunLog::warn(const std::string& warning) {
   Json::Value& warnings = log_["warnings"];
   if (std::find(warnings.begin(), warnings.end(), Json::Value(warning)) == warnings.end())
     warnings.append(warning);
+}
+
+/// Of so many steps, those that have no row.
+void RunLog::count_left_out(std::int64_t steps) {
+  log_["steps_left_out"] = Json::Int64(steps - std::int64_t{log_["steps"].size()});
+}
+
+void RunLog::begin_steps(Simulation& simulation) {
+  if (steps_ && room_for_steps()) steps_->begin(simulation);
+}
+
+void RunLog::add_step(const StepReport& report, Simulation& simulation, std::int64_t frame) {
+  if (!steps_) return;
+  if (room_for_steps()) log_["steps"].append(steps_->row(report, simulation, frame));
+  count_left_out(simulation.counters().step);
 }
 
 const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation) {
@@ -151,6 +176,7 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   row["dt"]["largest"] = frame.largest_dt;
   row["bound_by"] = limits_json(frame);
   row["redone"] = Json::Int64(frame.redone);
+  if (frame.redone > 0) row["redone_because"] = frame.first_refusal;
   if (frame.newton_iterations > 0) {
     row["newton_iterations"] = Json::Int64(frame.newton_iterations);
     row["linear_iterations"] = Json::Int64(frame.linear_iterations);
@@ -168,6 +194,7 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   row["asleep"] = Json::UInt64(simulation.particles_asleep());
   row["blocks"] = Json::UInt64(simulation.memory().blocks);
   row["hash"] = hex(simulation.hash());
+  if (log_.isMember("steps")) count_left_out(simulation.counters().step);
   return log_["frames"].append(row);
 }
 

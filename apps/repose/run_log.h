@@ -4,8 +4,10 @@
 
 #include <json/value.h>
 
+#include <optional>
 #include <string>
 
+#include "apps/repose/step_rows.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/simulation.h"
@@ -16,12 +18,17 @@ class RunLog {
  public:
   RunLog(const Scene& scene, const std::string& quality, const Simulation& simulation);
 
-  /// Takes over the warnings, and the frames up to `last`, of the log of an earlier part of the run, if there
-  /// is one at `path`.
-  void continue_from(const std::string& path, std::int64_t last);
+  /// Takes over the warnings, and the frames and steps up to those that were last, of the log of an earlier
+  /// part of the run, if there is one at `path`.
+  void continue_from(const std::string& path, const Counters& last);
 
   /// Keeps a warning, once.
   void warn(const std::string& warning);
+
+  /// Before the first step of a frame, or of a part of one; and after each step, within frame `frame`. They do
+  /// nothing unless the scene asks for rows of steps.
+  void begin_steps(Simulation& simulation);
+  void add_step(const StepReport& report, Simulation& simulation, std::int64_t frame);
 
   /// Adds a frame and returns its row.
   const Json::Value& add(const FrameReport& frame, Simulation& simulation);
@@ -40,7 +47,11 @@ class RunLog {
   Result<void> write_probes(const Simulation& simulation, const std::string& path) const;
 
  private:
+  bool room_for_steps() const { return log_["steps"].size() < kMostStepRows; }
+  void count_left_out(std::int64_t steps);
+
   Json::Value log_;
+  std::optional<StepRows> steps_;  // where the scene asks for them
 };
 
 /// Reads a run's log. Errors: 66, 74.

@@ -52,6 +52,8 @@ struct Inlet {
   std::string key;       ///< of the scene, under which it stands
   std::string material;  ///< its name in the scene
   std::int64_t particles_per_cell = 8;
+  double speed = 0.0;  ///< m/s, with which its particles begin at most
+  Bounds mouth;        ///< where they begin, m; known once the effect is ready
 };
 
 /// The scene around an effect, while it makes itself ready.

@@ -233,7 +233,15 @@ void Emitters::declare(Fields& fields) {
 
 std::vector<Inlet> Emitters::inlets() const {
   std::vector<Inlet> inlets;
-  for (const Emitter& e : list) inlets.push_back({e.name, "emitters", e.material, e.particles_per_cell});
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const Emitter& e = list[k];
+    const bool volume = e.type == Emitter::Type::kVolume;
+    const double speed = (1.0 + e.spread) * (volume ? e.velocity.norm() : e.speed);
+    Bounds mouth;
+    if (!volume) mouth = {e.center, e.center};
+    if (k < shapes_.size() && shapes_[k]) mouth = shapes_[k]->bounds();
+    inlets.push_back({e.name, "emitters", e.material, e.particles_per_cell, speed, mouth});
+  }
   return inlets;
 }
 

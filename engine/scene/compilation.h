@@ -2,6 +2,7 @@
 // Nothing outside this folder includes it.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,16 @@ struct Compilation {
 /// known. Errors: 65, 66, 78 as compile_scene.
 template <class Real>
 Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state);
+
+/// What bounds steps of a set of a material.
+inline StepLimits::Stiffness stiffness_of(const Elasticity& e) {
+  return {e.sound_speed(), std::sqrt((3.0 * e.lambda() + 2.0 * e.mu()) / e.density)};
+}
+
+/// What the scene asks for, or the cheaper kind of step where that is `auto`. `plan` is of either kind: it
+/// knows what moves. Its order passes are run, for solids know how far they reach only then.
+template <class Real>
+IntegratorChoice choose_integrator(const Compilation<Real>& compilation, State<Real>& state,
+                                   const std::vector<Solid>& solids, const StepPlan<Real>& plan);
 
 }  // namespace repose

@@ -80,7 +80,7 @@ void sign(StepPlan<Real>& plan, const char* name) {
 
 template <class Real>
 StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Real>& state,
-                            const std::vector<Solid>& solids) {
+                            const std::vector<Solid>& solids, bool implicit) {
   const Scene& scene = compilation.scene;
   const CompileOptions& options = compilation.options;
   StepPlan<Real> plan;
@@ -88,15 +88,13 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
   plan.transfer = transfer_choice(scene);
   plan.limits = step_limits(scene);
   plan.advection = scene.grid.advection;
-  const bool implicit = scene.time.integrator == Integrator::kImplicit;
   if (implicit) plan.implicit.emplace(ImplicitPlan<Real>{scene.implicit, {}});
   const Lattice<Real> lattice = make_lattice(state, plan.transfer);
   double lightest = std::numeric_limits<double>::infinity();
   for (const auto& set : state.sets) {
     lightest = std::min(lightest, set.particle_mass);
     if (implicit) continue;  // no wave and no pulse bounds a step that is solved for
-    const Elasticity& e = material_of(scene, set.material).elasticity();
-    plan.limits.sets.push_back({e.sound_speed(), std::sqrt((3.0 * e.lambda() + 2.0 * e.mu()) / e.density)});
+    plan.limits.sets.push_back(stiffness_of(material_of(scene, set.material).elasticity()));
   }
   // A lighter node would lose no momentum that its neighbours' sums could still hold.
   plan.least_mass = static_cast<Real>(1e-12 * lightest);
@@ -224,7 +222,11 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   for (const Solid& solid : compiled.solids) compilation.surroundings.solids.push_back(solid.name);
   if (auto ready = prepare(compilation.effects, compilation.surroundings); !ready) return ready.error();
   if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
-  compiled.plan = compile_plan(compilation, state, compiled.solids);
+  const bool asked = scene.time.integrator == Integrator::kImplicit;
+  compiled.plan = compile_plan(compilation, state, compiled.solids, asked);
+  compiled.integrator = choose_integrator(compilation, state, compiled.solids, compiled.plan);
+  if (compiled.integrator.implicit && !asked)
+    compiled.plan = compile_plan(compilation, state, compiled.solids, true);
   state.rest.on = compiled.plan.rest.has_value();
   state.acceleration.on = compiled.plan.implicit.has_value();
   if (state.rest.on && state.acceleration.on)

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "engine/effect/solid.h"
+#include "engine/scene/integrator.h"
 #include "engine/scene/scene.h"
 #include "engine/state/state.h"
 #include "engine/step/step_plan.h"
@@ -19,6 +21,8 @@ struct CompileOptions {
   Target target = best_target();
   bool allow_outside_paths = false;
   double memory_limit = 0.0;  ///< bytes; 0: 85 % of the machine's memory
+  /// Of implicit steps, by which time.integrator `auto` is decided; none: the committed ones.
+  std::span<const ImplicitCost> implicit_costs = {};
 };
 
 template <class Real>
@@ -26,6 +30,7 @@ struct CompiledScene {
   State<Real> state;
   StepPlan<Real> plan;
   std::vector<Solid> solids;
+  IntegratorChoice integrator;
 };
 
 /// Builds shapes, seeds bodies, lists the passes. Errors: 65 geometry that is wrong or holds no particle, 66 a

@@ -24,6 +24,16 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
   return list;
 }
 
+double step_cost(const Scene& scene) {
+  return cost_of("step") + effects_cost(scene);
+}
+
+double effects_cost(const Scene& scene) {
+  double sum = 0.0;
+  for (const EffectStatus& effect : effect_status(scene)) sum += effect.nanoseconds;
+  return sum;
+}
+
 double last_frame_time(const Scene& scene) {
   return clock_of(scene.time).at(scene.time.frames);
 }

@@ -18,6 +18,10 @@ struct EffectStatus {
 };
 std::vector<EffectStatus> effect_status(const Scene& scene);
 
+/// ns per particle and step, about: an explicit step with the scene's effects, and the effects alone.
+double step_cost(const Scene& scene);
+double effects_cost(const Scene& scene);
+
 /// When the scene's last frame ends, s.
 double last_frame_time(const Scene& scene);
 /// How many particles inlets will have made by a time (s).

@@ -60,6 +60,7 @@ void describe_periodic(Fields& fields, GridDescription& grid) {
 constexpr Choice kIntegrators[] = {
     {"explicit", "short steps, each cheap"},
     {"implicit", "backward Euler: long steps, each solved for (key 'implicit')"},
+    {"auto", "whichever of the two should take less time; `repose plan` says which, and why"},
 };
 
 constexpr Choice kTangentModeChoices[] = {

@@ -110,6 +110,10 @@ void describe_output(Fields& fields, OutputDescription& output, double spacing, 
       "fog", output.fog.given, false, "density and velocity of the material on voxels, as NAME.fog.####.vdb",
       [&](Fields& f) { describe_voxel(f, output.fog.voxel, spacing, "edge of a voxel; 0: grid.spacing"); });
   fields.flag("checkpoint", output.checkpoint, "a state to resume from per frame, the last two kept");
+  fields.flag("steps", output.steps, "figures of each step in run.json, of the first 5000 (docs/output.md)");
+  fields.flag("residuals", output.residuals, "with \"steps\": what was left over in each Newton iteration");
+  fields.check(output.steps || !output.residuals, "residuals",
+               "are part of the figures of each step: add \"steps\": true");
 }
 
 void describe_camera(Fields& fields, CameraDescription& camera) {

@@ -47,6 +47,7 @@ struct GridDescription {
 enum class Integrator {
   kExplicit,  ///< symplectic: short steps, each cheap
   kImplicit,  ///< backward Euler: long steps, each solved for
+  kAuto,      ///< whichever should take less time (engine/scene/integrator.h)
 };
 
 struct TimeDescription {
@@ -118,6 +119,8 @@ struct OutputDescription {
   SurfaceDescription surface;               ///< NAME.surface.####.vdb
   FogDescription fog;                       ///< NAME.fog.####.vdb
   bool checkpoint = true;                   ///< a resumable state per frame, two kept
+  bool steps = false;                       ///< a row of figures per step in run.json
+  bool residuals = false;                   ///< and in it the residual of each Newton iteration
 };
 
 /// How `movie` looks at the run.

@@ -35,16 +35,12 @@ std::string describe_offender(const Offender& offender, const StepReport& report
 
 std::string describe_unsolved(const StepReport& report) {
   const NewtonReport& newton = report.implicit->newton;
-  const std::string why[] = {
-      "", "", "it needs more than implicit.newton_iterations", "no step along its direction lowers the residual",
-      std::string("the linear solver gave up (") + status_name(report.implicit->linear) + ")",
-      "the residual has no value where it starts"};
   char text[512];
   std::snprintf(
       text, sizeof text,
       "no velocities solve a step, even one of %.3g s: %s (%d iterations, residual %.3g of %.3g asked); a "
       "smaller time.max_step, a larger implicit.tolerance or grid.precision double may help",
-      report.dt, why[static_cast<int>(newton.end)].c_str(), newton.iterations, newton.last,
+      report.dt, unsolved_text(*report.implicit).c_str(), newton.iterations, newton.last,
       newton.tolerance);
   return text;
 }
@@ -55,6 +51,7 @@ class SimulationOf final : public Simulation {
   SimulationOf(const Scene& scene, const SimulationOptions& options, CompiledScene<Real> compiled, int threads)
       : scene_(scene),
         target_(options.target),
+        integrator_(std::move(compiled.integrator)),
         solids_(std::move(compiled.solids)),
         state_(std::move(compiled.state)),
         stepper_(std::move(compiled.plan), threads) {
@@ -117,6 +114,7 @@ class SimulationOf final : public Simulation {
     const double no_frame = std::numeric_limits<double>::infinity();
     return next_step(stepper_.plan(), state_.spacing, Counters{}, no_frame).dt;
   }
+  const IntegratorChoice& integrator() const override { return integrator_; }
   Target target() const override { return target_; }
   int threads() const override { return const_cast<Stepper<Real>&>(stepper_).threads().count(); }
   const std::vector<Solid>& solids() const override { return solids_; }
@@ -163,6 +161,7 @@ class SimulationOf final : public Simulation {
 
   Scene scene_;
   Target target_;
+  IntegratorChoice integrator_;
   std::vector<Solid> solids_;
   State<Real> state_;
   Stepper<Real> stepper_;
@@ -191,6 +190,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     if (!tried) return tried.error();
     const StepReport& report = *tried;
     frame.redone += report.redone;
+    if (frame.first_refusal.empty()) frame.first_refusal = report.first_refusal;
     if (report.implicit) {
       frame.newton_iterations += report.implicit->newton.iterations;
       frame.linear_iterations += report.implicit->newton.linear_iterations;

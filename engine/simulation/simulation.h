@@ -35,6 +35,7 @@ struct FrameReport {
   double least_dt = 0.0, largest_dt = 0.0;                    ///< s
   std::array<std::int64_t, 6> limits{};                       ///< steps bound by each Limit
   std::int64_t redone = 0;                                    ///< halvings
+  std::string first_refusal;                                  ///< why the first of them; empty without any
   std::int64_t newton_iterations = 0, linear_iterations = 0;  ///< of implicit steps that were made
   double seconds = 0.0;                                       ///< wall time
   Profile profile;                                            ///< wall time per phase
@@ -77,6 +78,8 @@ class Simulation {
   virtual std::vector<Measurement> measurements() const = 0;
   /// What the limits of the step allow while nothing moves, s.
   virtual double longest_step() const = 0;
+  /// How steps are made, and why so.
+  virtual const IntegratorChoice& integrator() const = 0;
   virtual Target target() const = 0;
   virtual int threads() const = 0;
   virtual const std::vector<Solid>& solids() const = 0;

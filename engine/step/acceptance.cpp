@@ -10,6 +10,27 @@
 
 namespace repose {
 
+std::string refusal_text(const Offender& offender) {
+  return "particle " + std::to_string(offender.id) + " of '" + offender.set + "' " + offender.reason;
+}
+
+std::string unsolved_text(const ImplicitReport& report) {
+  switch (report.newton.end) {
+    case NewtonEnd::kConverged:
+    case NewtonEnd::kStalled:
+      break;
+    case NewtonEnd::kIterations:
+      return "it needs more than implicit.newton_iterations";
+    case NewtonEnd::kNoDescent:
+      return "no step along its direction lowers the residual";
+    case NewtonEnd::kUnsolved:
+      return std::string("the linear solver gave up (") + status_name(report.linear) + ")";
+    case NewtonEnd::kUndefined:
+      return "the residual has no value where it starts";
+  }
+  return "";
+}
+
 /// The particle for whose sake no step is short enough.
 template <class Real>
 Offender Stepper<Real>::fastest(const State<Real>& state) const {

@@ -51,11 +51,15 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     update_nodes(state, dt);
     if (implicit_ && !solve(state, dt, report)) {
       report.offender.reset();
+      if (report.redone == 0) report.first_refusal = unsolved_text(*report.implicit);
       continue;
     }
     if (rest_) wake(state, dt);
     report.offender = inspect(state, dt);
-    if (report.offender) continue;
+    if (report.offender) {
+      if (report.redone == 0) report.first_refusal = refusal_text(*report.offender);
+      continue;
+    }
     gather(state, dt);
     finish(state, dt);
     state.counters.last_dt = report.dt;

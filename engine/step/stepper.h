@@ -34,10 +34,16 @@ struct StepReport {
   double dt = 0.0;  ///< s; of the step made, or of the last one refused
   Limit limit = Limit::kMaxStep;
   int redone = 0;                          ///< how often it was refused
+  std::string first_refusal;               ///< why, the first time; empty where it was not
   std::optional<Offender> offender;        ///< of the last refusal
   std::optional<Error> error;              ///< an event could not be carried out; no step was then tried
   std::optional<ImplicitReport> implicit;  ///< of the last try, where steps are implicit
 };
+
+/// Why a step was refused: "particle 7 of 'pile' would move over a cell"; "it needs more than
+/// implicit.newton_iterations".
+std::string refusal_text(const Offender& offender);
+std::string unsolved_text(const ImplicitReport& report);
 
 template <class Real>
 class Stepper {
