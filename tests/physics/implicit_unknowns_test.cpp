@@ -72,16 +72,16 @@ TEST(ImplicitUnknowns, AreThoseOfNodesWithMassLessWhatIsHeld) {
 }
 
 /// Two cubes of 12 cells, the second of which begins 32 cells from the first, or 1280032. All lengths are
-/// binary fractions, so that nothing is rounded 10 km away.
+/// binary fractions, so that nothing is rounded 10 km away. Both slide, so that blocks begin and end.
 constexpr const char* kTwo = R"json({"repose": 1, "name": "two",
   "parameters": {"dx": 0.0078125, "there": 0.25, "wide": "= 12 * dx"},
   "grid": {"spacing": "= dx"},
   "time": {"integrator": "implicit", "max_step": 2e-3},
   "materials": {"sand": {"type": "drucker_prager"}},
   "bodies": [
-    {"name": "here", "material": "sand", "sampling": "poisson_disk",
+    {"name": "here", "material": "sand", "sampling": "poisson_disk", "velocity": [0.7, 0, 0],
      "shape": {"type": "box", "lower": [0, 0, 0], "upper": ["= wide", "= wide", "= wide"]}},
-    {"name": "there", "material": "sand", "sampling": "poisson_disk",
+    {"name": "there", "material": "sand", "sampling": "poisson_disk", "velocity": [0.7, 0, 0],
      "shape": {"type": "box", "lower": ["= there", 0, 0], "upper": ["= there + wide", "= wide", "= wide"]}}],
   "colliders": [{"name": "floor", "contact": "separating", "shape": {"type": "plane"}, "friction": 0.5}]})json";
 
