@@ -9,10 +9,10 @@ namespace {
 
 TEST(ImplicitLong, HourglassInFull_IsSolvedAtOnce) {
   const double limit = simulate(scene_file("hourglass.json"))->longest_step();
-  for (const double multiple : {1.0, 5.0, 10.0}) {
+  for (const double multiple : {10.0, 5.0, 1.0}) {
     const auto simulation = simulate(scene_file(
         "hourglass.json", {"time.integrator=implicit", "time.max_step=" + std::to_string(multiple * limit)}));
-    const Ride figures = ride(*simulation, 0.5, 60);
+    const Ride figures = ride(*simulation, 0.5, 40);
     report("hourglass_in_full_" + std::to_string(static_cast<int>(multiple)), figures);
     EXPECT_FALSE(figures.refused);
     EXPECT_GE(figures.clean_share(), 0.99) << multiple;
