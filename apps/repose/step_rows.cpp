@@ -14,7 +14,7 @@ void add_solve(const ImplicitReport& solve, bool residuals, Json::Value& row) {
   row["unknowns"] = Json::Int64(solve.unknowns);
   row["residual"]["first"] = newton.first;
   row["residual"]["last"] = newton.last;
-  row["residual"]["tolerance"] = solve.tolerance;
+  row["residual"]["tolerance"] = solve.newton.tolerance;
   if (!residuals) return;
   Json::Value& list = row["residuals"] = Json::Value(Json::arrayValue);
   const auto count = std::min<std::size_t>(newton.history.size(), kMostResiduals);
