@@ -80,6 +80,25 @@ TEST(ImplicitRun, TimeToTheEnd_IsOfAllThatWasAskedFor) {
   EXPECT_EQ(run.seconds_to_the_end(), 12.0);
 }
 
+/// The control of the study: sand that yields after the solve holds on to what leaves.
+TEST(Parting, Lagged_HoldsTheBlocksTogether) {
+  StudyArguments arguments = tiny();
+  arguments.modes = {"lagged", "exact"};
+  arguments.steps = {1e-2};
+  arguments.until = 0.5;
+  const auto table = study_parting(arguments);
+  ASSERT_TRUE(table) << table.error().text();
+  const auto share = [&](const char* mode) {
+    for (const auto& row : table->rows) {
+      if (row.front() == mode) return std::stod(row[3]);
+    }
+    return -1.0;
+  };
+  EXPECT_NEAR(share("`lagged`"), 50.0, 2.0) << "half of the momentum: they stay together";
+  EXPECT_GT(share("`exact`"), 0.0);
+  EXPECT_LT(share("`exact`"), 15.0);
+}
+
 TEST(ImplicitBench, Page_HoldsTheTableOfItsMarkAlone) {
   const std::string page =
       std::filesystem::temp_directory_path() / ("repose_implicit_page_" + std::to_string(getpid()));
