@@ -95,10 +95,11 @@ Result<void> add(Table& table, const StudyArguments& arguments, const std::strin
   const auto slope = steepest(arguments, how);
   if (!slope) return slope.error();
   const double angle = 0.5 * (slope->gentle + slope->steep);
-  const bool found = slope->stopped.empty();
-  add_row(table,
-          {name, step, found ? with_decimals(angle, 1) : slope->stopped,
-           found ? with_decimals(angle - calibrated(), 1) : "", slope->full, with_digits(slope->seconds, 2)});
+  std::string text = with_decimals(angle, 1), beyond = with_decimals(angle - calibrated(), 1);
+  if (slope->gentle == kGentle) text = "under " + with_decimals(slope->steep, 0), beyond.clear();
+  if (slope->steep == kSteep) text = "over " + with_decimals(slope->gentle, 0), beyond.clear();
+  if (!slope->stopped.empty()) text = slope->stopped, beyond.clear();
+  add_row(table, {name, step, text, beyond, slope->full, with_digits(slope->seconds, 2)});
   return {};
 }
 
