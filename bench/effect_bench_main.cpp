@@ -1,41 +1,18 @@
-// Repose: the words of effect_bench, and how its tables get into a page and into what forecasts use.
+// Repose: the words of effect_bench.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "apps/repose/command.h"
 #include "bench/effect_bench.h"
 #include "bench/implicit_costs.h"
-#include "engine/io/atomic_file.h"
+#include "bench/page.h"
 
 namespace repose {
 namespace {
 
-/// The lines that a file holds what was measured between.
-struct Marks {
-  std::string begin, end;
-};
 const Marks kPageMarks{"<!-- effect_bench: begin -->\n", "<!-- effect_bench: end -->\n"};
 const Marks kImplicitMarks{"    // implicit_costs: begin\n", "    // implicit_costs: end\n"};
 const Marks kCostMarks{"    // effect_bench: begin\n", "    // effect_bench: end\n"};
-
-/// Puts text between the marks of a file.
-Result<void> put_into(const std::string& path, const Marks& marks, const std::string& text) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorKind::kNoInput, "cannot be read", path};
-  std::string page{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t begin = page.find(marks.begin), end = page.find(marks.end);
-  if (begin == std::string::npos || end == std::string::npos || end < begin) {
-    return Error{ErrorKind::kBadScene,
-                 "has no lines " + marks.begin + "and " + marks.end + "to put figures between", path};
-  }
-  page.replace(begin, end - begin, marks.begin + text);
-  auto out = AtomicFile::create(path);
-  if (!out) return out.error();
-  if (auto written = out->write(page.data(), page.size()); !written) return written;
-  return out->commit();
-}
 
 /// Both tables of the file: effects, and implicit steps.
 Result<void> put_costs(const std::string& path, const std::vector<EffectCost>& effects) {
