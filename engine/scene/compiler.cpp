@@ -38,6 +38,19 @@ MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const Material
   return runtime;
 }
 
+/// As the scene says; or between the strains of two cells of the material under their own weight, and none:
+/// with less it would carry no more than a few cells, with more the sand would cohere.
+template <class Real>
+UnilateralConstants<Real> unilateral_of(const Scene& scene, const Elasticity& elasticity) {
+  if (const auto& given = scene.implicit.unilateral) {
+    return {static_cast<Real>(given->begin), static_cast<Real>(given->width), static_cast<Real>(given->bend)};
+  }
+  constexpr double kCells = 2.0, kGravity = 9.81, kBend = 1e-2;
+  const double dilation = stiffness_of(elasticity).dilation_speed;  // K = rho a^2 / 3
+  const double strain = kCells * std::sqrt(3.0) * kGravity * scene.grid.spacing / (dilation * dilation);
+  return {static_cast<Real>(-strain), static_cast<Real>(strain), static_cast<Real>(kBend)};
+}
+
 Result<void> prepare(Effects& effects, const Surroundings& surroundings) {
   Result<void> ready;
   for_each_effect(effects, [&](auto& effect) {
@@ -153,7 +166,10 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
     for_each_effect(compilation.effects,
                     ask([&](const auto& effect) { effect.add_after_motion(assembly, k); }));
     passes.push_back(trial_pass(material));  // strain of the step
-    if (implicit) plan.implicit->sets.push_back({material.kernels, material.constants, false, {}});
+    if (implicit) {
+      plan.implicit->sets.push_back(
+          {material.kernels, material.constants, unilateral_of<Real>(scene, description.elasticity())});
+    }
     if (!description.yields()) continue;
     const std::size_t surface = passes.size();
     bool shaped = false;

@@ -144,16 +144,21 @@ void describe(Fields& fields, ImplicitSettings& implicit) {
                  {.meaning = "that generalized_conjugate_residual keeps; two vectors of nodes each",
                   .low = 1.0,
                   .high = 1000.0});
-  bool given = false;
-  fields.object("unilateral", given, false, "where the energy of mode unilateral lets tension go",
-                [&](Fields& f) {
-                  f.number("begin", implicit.unilateral.begin,
-                           {.meaning = "strain, tr(eps)/sqrt(3), below which all of the stress acts"});
-                  f.number("width", implicit.unilateral.width,
-                           {.meaning = "strain over which the stress fades", .low = 0.0, .low_open = true});
-                  f.number("bend", implicit.unilateral.bend,
-                           {.meaning = "how much sooner it fades under shear", .low = 0.0});
-                });
+  bool given = implicit.unilateral.has_value();
+  UnilateralConstants<double> unilateral = implicit.unilateral.value_or(UnilateralConstants<double>{});
+  fields.object(
+      "unilateral", given, false,
+      "where the energy of mode unilateral lets tension go; without it, under the pressure of two "
+      "cells of the material at 9.81 m/s^2",
+      [&](Fields& f) {
+        f.number("begin", unilateral.begin,
+                 {.meaning = "strain, tr(eps)/sqrt(3), below which all of the stress acts", .required = true});
+        f.number(
+            "width", unilateral.width,
+            {.meaning = "strain over which the stress fades", .low = 0.0, .low_open = true, .required = true});
+        f.number("bend", unilateral.bend, {.meaning = "how much sooner it fades under shear", .low = 0.0});
+      });
+  implicit.unilateral = given ? std::optional(unilateral) : std::nullopt;
 }
 
 void describe(Fields& fields, TimeDescription& time) {

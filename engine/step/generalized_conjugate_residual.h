@@ -74,8 +74,10 @@ class GeneralizedConjugateResidual {
     system.precondition(q, s_);
     qq = system.dot(q, s_);
     const double zq = system.dot(z_, q);
-    const bool from_residual = &seed == &z_, nowhere = std::abs(zq) <= kNowhere * watch.norm() * std::sqrt(qq);
-    if (nowhere && qq > 0.0 && !(from_residual && watch.singular(zq, ww)) && blind_ + 1 < kept_.size()) {
+    // Where A P r itself is next to nothing r is all but in the null space of A, and no direction leads on.
+    const bool seen = &seed != &z_ || std::sqrt(ww) > kNowhere * watch.scale() * watch.norm();
+    const bool nowhere = qq > 0.0 && std::abs(zq) <= kNowhere * watch.norm() * std::sqrt(qq);
+    if (nowhere && seen && blind_ + 1 < kept_.size()) {
       ++blind_;
       watch.advance(watch.norm() * watch.norm());
       return false;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/step/pass.h"
@@ -28,11 +29,12 @@ struct ImplicitSettings {
   TangentMode mode = TangentMode::kExact;
   LinearMethod method = LinearMethod::kByMode;
   Preconditioner preconditioner = Preconditioner::kMass;
-  double tolerance = 1e-3;  ///< of the residual, over the larger of outer and inner impulses of the step
+  double tolerance = 3e-2;  ///< of the residual, over the larger of outer and inner impulses of the step
   std::int64_t newton_iterations = 40;
   std::int64_t krylov_iterations = 2000;  ///< in one Newton iteration
   std::int64_t directions = 4;            ///< that generalised conjugate residual keeps
-  UnilateralConstants<double> unilateral{-3e-3, 3e-3, 1e-2};
+  /// None: by the stiffness of each material, see unilateral_of.
+  std::optional<UnilateralConstants<double>> unilateral;
 };
 
 /// Whether linear systems are solved by a method for symmetric ones.
@@ -77,8 +79,9 @@ template <class Real>
 struct SetResponse {
   MaterialKernels<Real> kernels;
   std::shared_ptr<const void> constants;
+  UnilateralConstants<Real> unilateral{};
   bool shaped = false;  ///< whether particles yield by numbers of their own
-  std::vector<ParticlePass<Real>> surface;
+  std::vector<ParticlePass<Real>> surface{};
 };
 
 template <class Real>

@@ -35,9 +35,6 @@ ImplicitStep<Real>::ImplicitStep(const StepPlan<Real>& plan, Threads& threads,
       implicit_(*plan.implicit),
       returns_(plan.implicit->settings.mode == TangentMode::kExact ||
                plan.implicit->settings.mode == TangentMode::kProjected),
-      unilateral_{static_cast<Real>(plan.implicit->settings.unilateral.begin),
-                  static_cast<Real>(plan.implicit->settings.unilateral.width),
-                  static_cast<Real>(plan.implicit->settings.unilateral.bend)},
       sweep_(plan, threads, scratch),
       system_(sweep_, contacts_, plan.implicit->settings.preconditioner) {}
 
@@ -179,7 +176,7 @@ bool ImplicitStep<Real>::stress(std::size_t set, Chunk<Real>& chunk, ImplicitScr
   }
   const bool fades =
       implicit_.settings.mode == TangentMode::kUnilateral && response.kernels.fading_stress != nullptr;
-  fades ? response.kernels.fading_stress(in, unilateral_) : response.kernels.stress(in);
+  fades ? response.kernels.fading_stress(in, response.unilateral) : response.kernels.stress(in);
   Real* matrix[kAffineComponents];
   for (std::size_t k = 0; k < kAffineComponents; ++k) matrix[k] = own.matrix.data() + k * kChunk;
   return sweep_.kernels().turn(in.stress, in.gradient, sweep_.dt(), matrix, in.count);
@@ -265,7 +262,7 @@ void ImplicitStep<Real>::linearize(const Vector& v) {
                           const MaterialInput<Real> in = try_strain(k, chunk, own);
                           const SetResponse<Real>& response = implicit_.sets[k];
                           response.kernels.linearize[mode]({in, yield_surface(response, chunk.scratch),
-                                                            unilateral_, system_.tangent(k, chunk)});
+                                                            response.unilateral, system_.tangent(k, chunk)});
                         });
 }
 

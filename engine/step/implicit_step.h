@@ -71,7 +71,6 @@ class ImplicitStep {
   const StepPlan<Real>& plan_;
   const ImplicitPlan<Real>& implicit_;
   bool returns_;  // whether sand yields within the solve
-  UnilateralConstants<Real> unilateral_;
   BlockSweep<Real> sweep_;
   ContactSet<Real> contacts_;
   TangentSystem<Real> system_;

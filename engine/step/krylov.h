@@ -173,6 +173,8 @@ class ResidualWatch {
 
   bool ended() const { return ended_; }
   double norm() const { return norm_; }
+  /// The largest |A P r|_P / |r|_P seen.
+  double scale() const { return scale_; }
 
   SolveReport report() {
     report_.status = status_;
@@ -181,7 +183,7 @@ class ResidualWatch {
   }
 
  private:
-  static constexpr double kZero = 64.0;  // machine epsilons that count as zero
+  static constexpr double kZero = 64.0;   // machine epsilons that count as zero
   static constexpr double kNoise = 16.0;  // machine epsilons that a product may be off by
 
   void end(SolveStatus status) {
@@ -207,8 +209,8 @@ class ResidualWatch {
   double tolerance_ = 0.0;
   double norm_ = 0.0;
   double true_norm_ = std::numeric_limits<double>::infinity();
-  double scale_ = 0.0;  // largest |A P r|_P / |r|_P seen
-  bool fresh_ = true;   // no iteration yet since r was computed anew
+  double scale_ = 0.0;
+  bool fresh_ = true;  // no iteration yet since r was computed anew
 };
 
 /// r = b - A x and z = P r; returns r^T P r. A start of zero, which Newton's method has, costs no product.

@@ -50,6 +50,41 @@ TEST(GeneralizedConjugateResidual, SingularNonsymmetricSystem_EndsAndSaysSo) {
   }
 }
 
+TEST(GeneralizedConjugateResidual, WhereNoDirectionOfTheResidualLeadsOn_SolvesAllTheSame) {
+  // r^T A r = 0 for every r: each direction made of a residual leads nowhere.
+  Dice dice(16);
+  for (const int n : {2, 10, 30}) {
+    const MatrixXd any = dice.square(n);
+    const MatrixXd a = any - any.transpose();
+    const VectorXd b = dice.vector(n);
+    System system(a);
+    GeneralizedConjugateResidual<System> solver(system, n);
+    const Outcome outcome = solve_with(solver, system, b, {.relative = 1e-11, .iterations = 500});
+    EXPECT_TRUE(outcome.report.converged()) << n << " " << status_name(outcome.report.status);
+    EXPECT_LT((outcome.x - a.partialPivLu().solve(b)).norm() / outcome.x.norm(), 1e-9) << n;
+  }
+}
+
+TEST(LinearSolve, OfGeneralizedConjugateResidual_ShiftsWhatIsSingular) {
+  System system(VectorXd{{0, -0.1, 2}}.asDiagonal().toDenseMatrix());
+  using General = GeneralizedConjugateResidual<System>;
+  LinearSolve<System, General> ladder(system, General(system, 4));
+  const Outcome outcome = solve_with(ladder, system, VectorXd{{1, 1, 1}}, {.relative = 1e-12});
+  EXPECT_TRUE(outcome.report.converged()) << status_name(outcome.report.status);
+  EXPECT_EQ(outcome.report.rung, SolveRung::kShifted);
+  EXPECT_LT((outcome.x - VectorXd{{1, 1 / 0.9, 1 / 3.0}}).norm(), 1e-11);
+  EXPECT_EQ(system.delta, 0.0);
+}
+
+TEST(LinearSolve, BreakdownWithEnoughDone_IsAnEnd) {
+  System system(VectorXd{{0, 1, 2}}.asDiagonal().toDenseMatrix());
+  LinearSolve<System> ladder(system);
+  const Outcome outcome = solve_with(ladder, system, VectorXd{{0.3, 1, 1}}, {.relative = 1e-12, .enough = 0.5});
+  EXPECT_EQ(outcome.report.status, SolveStatus::kSingular);
+  EXPECT_EQ(outcome.report.rung, SolveRung::kRestarted);
+  EXPECT_LT((outcome.x.tail(2) - VectorXd{{1, 0.5}}).norm(), 1e-9);
+}
+
 TEST(Krylov, PreconditionerNotDefinite_BreaksDown) {
   System system(MatrixXd::Identity(3, 3), -MatrixXd::Identity(3, 3));
   with_symmetric_solvers(system, 3, [&](const char* name, auto& solver) {

@@ -90,17 +90,16 @@ TEST(ImplicitEnergy, OfAColumn_NeverRises) {
   }
   for (const double multiple : {1.0, 4.0, 16.0})
     expect_bound("column_projected", kColumn, multiple, 100, {"implicit.mode=projected"});
-  expect_bound("column_unilateral", kColumn, 1.0, 100, kFading);
+  expect_bound("column_projected", kColumn, 64.0, 15, {"implicit.mode=projected"});
+  for (const double multiple : {1.0, 4.0}) expect_bound("column_unilateral", kColumn, multiple, 60, kFading);
 }
 
 TEST(ImplicitEnergy, DISABLED_OfAColumnProjectedInVeryLongSteps_NeverRisesAtFullStep) {
-  for (const double multiple : {64.0, 100.0}) {
-    EXPECT_GT(expect_bound("column_projected", kColumn, multiple, 15, {"implicit.mode=projected"}), 0.5);
-  }
+  EXPECT_GT(expect_bound("column_projected", kColumn, 100.0, 15, {"implicit.mode=projected"}), 0.5);
 }
 
 TEST(ImplicitEnergy, DISABLED_OfAColumnUnilateral_NeverRisesAtFullStep) {
-  for (const double multiple : {4.0, 16.0, 64.0}) {
+  for (const double multiple : {16.0, 64.0}) {
     EXPECT_GT(expect_bound("column_unilateral", kColumn, multiple, 15, kFading), 0.5);
   }
 }

@@ -133,7 +133,8 @@ TEST(ImplicitUnknowns, OfTwoBodiesTenKilometresApart_AreThoseOfTwoSideBySide) {
   report("two_bytes_side_by_side", bytes(near.memory));
   report("two_bytes_10_km_apart", bytes(far.memory));
   report("two_apart", apart(near, far, 10000.0), "m");
-  EXPECT_LE(bytes(far.memory), 1.05 * bytes(near.memory));
+  // Two more nodes of the tree above the blocks, whatever the distance.
+  EXPECT_LE(bytes(far.memory) - bytes(near.memory), 2e6);
   EXPECT_LT(apart(near, far, 10000.0), 1e-9);
 }
 
