@@ -56,11 +56,17 @@ Result<void> add(Table& table, const StudyArguments& arguments, double modulus, 
   RunRequest request = column(arguments, kCells, set);
   request.until = arguments.until_or(kTime);
   const auto run = run_scene(request);
+  const std::string key =
+      variant.empty() ? "default" : "`" + variant.substr(std::string("implicit.").size()) + "`";
+  if (!run && !variant.empty() && run.error().kind == ErrorKind::kBadScene) {  // not every key goes with a mode
+    add_row(table,
+            {with_digits(modulus, 4), with_digits(times, 3), "`" + mode + "`", key, "", "", "", "", "refused"});
+    return {};
+  }
   if (!run) return run.error();
-  add_row(table, {with_digits(modulus, 4), with_digits(times, 3), "`" + mode + "`",
-                  variant.empty() ? "default" : "`" + variant.substr(std::string("implicit.").size()) + "`",
-                  run->newton_per_step(), run->linear_per_step(), std::to_string(run->redone),
-                  run->full_share(), run->done() ? with_digits(run->seconds, 2) : run->stopped()});
+  add_row(table, {with_digits(modulus, 4), with_digits(times, 3), "`" + mode + "`", key, run->newton_per_step(),
+                  run->linear_per_step(), std::to_string(run->redone), run->full_share(),
+                  run->done() ? with_digits(run->seconds, 2) : run->stopped()});
   return {};
 }
 

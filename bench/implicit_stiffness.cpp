@@ -11,9 +11,16 @@ namespace {
 constexpr std::int64_t kCells = 10;
 constexpr double kAllowed = 0.05;
 
-RunRequest stiff(const StudyArguments& arguments, double modulus, std::vector<std::string> set) {
+/// `step`: about how long steps will be, s.
+RunRequest stiff(const StudyArguments& arguments, double modulus, double step, std::vector<std::string> set) {
+  constexpr double kKept = 0.99, kPer = 3.4e-4;  // s: the explicit step of the softest column
+  set.push_back(assign("grid.kept_velocity", std::pow(kKept, step / kPer)));
   set.push_back(assign("materials.sand.youngs_modulus", modulus));
   return column(arguments, kCells, set);
+}
+
+double explicit_step(double modulus) {
+  return 3.4e-4 * std::sqrt(kColumnModulus / modulus);
 }
 
 struct Reference {
@@ -23,7 +30,8 @@ struct Reference {
 
 /// Explicit runs that may not be finished take what a softer column was compared with.
 Result<Reference> reference(const StudyArguments& arguments, double modulus, const Reference& softer) {
-  RunRequest request = stiff(arguments, modulus, {"time.sound=0.25", "time.isolated=0.45"});
+  RunRequest request =
+      stiff(arguments, modulus, 0.5 * explicit_step(modulus), {"time.sound=0.25", "time.isolated=0.45"});
   request.most_seconds *= 3.0;
   const auto run = run_scene(request);
   if (!run) return run.error();
@@ -49,7 +57,7 @@ Result<Cheapest> cheapest_implicit(const StudyArguments& arguments, double modul
   Cheapest best;
   for (const std::string& mode : arguments.modes_or(kYieldingModes)) {
     for (const double step : arguments.steps_or({3e-3, 1e-3, 3e-4})) {
-      RunRequest request = stiff(arguments, modulus, implicit_steps(mode, step));
+      RunRequest request = stiff(arguments, modulus, step, implicit_steps(mode, step));
       if (!best.how.empty()) request.most_seconds = std::min(request.most_seconds, best.seconds);
       const auto run = run_scene(request);
       if (!run) return run.error();
@@ -70,7 +78,7 @@ Result<void> add(Table& table, const StudyArguments& arguments, double modulus, 
   const auto found = reference(arguments, modulus, right);
   if (!found) return found.error();
   right = *found;
-  const auto run = run_scene(stiff(arguments, modulus, {}));
+  const auto run = run_scene(stiff(arguments, modulus, explicit_step(modulus), {}));
   if (!run) return run.error();
   const auto best = cheapest_implicit(arguments, modulus, right);
   if (!best) return best.error();

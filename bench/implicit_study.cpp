@@ -12,6 +12,7 @@ const std::vector<Study>& studies() {
       {"stiffness", "seconds to the same run-out, against Young's modulus", study_stiffness},
       {"pile", "a plate that sinks slowly into a bed", study_pile},
       {"ablation", "what each key of the solver is worth", study_ablation},
+      {"iteration", "what a linear iteration takes, beside an explicit step", study_iteration},
       {"tolerance", "run-out and seconds against implicit.tolerance", study_tolerance},
   };
   return list;

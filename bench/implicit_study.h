@@ -62,6 +62,8 @@ Result<Table> study_stiffness(const StudyArguments& arguments);
 Result<Table> study_pile(const StudyArguments& arguments);
 /// What each key of the solver is worth.
 Result<Table> study_ablation(const StudyArguments& arguments);
+/// What an iteration of each linear method takes, beside an explicit step.
+Result<Table> study_iteration(const StudyArguments& arguments);
 /// Run-out and seconds against implicit.tolerance.
 Result<Table> study_tolerance(const StudyArguments& arguments);
 

@@ -7,8 +7,10 @@
 
 namespace repose {
 
-enum class Phase { kOrder, kScatter, kNodes, kSolve, kInspect, kGather };
-inline constexpr std::array<const char*, 6> kPhaseNames{"order", "scatter", "nodes", "solve", "inspect", "gather"};
+/// Of an implicit step, kNewton is all of the solve but its linear systems, kKrylov those.
+enum class Phase { kOrder, kScatter, kNodes, kNewton, kKrylov, kInspect, kGather };
+inline constexpr std::array<const char*, 7> kPhaseNames{"order",  "scatter", "nodes", "newton",
+                                                        "krylov", "inspect", "gather"};
 
 /// Seconds spent per phase.
 struct Profile {

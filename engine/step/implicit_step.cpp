@@ -30,11 +30,12 @@ YieldInput<Real> yield_surface(const SetResponse<Real>& response, Scratch<Real>&
 
 template <class Real>
 ImplicitStep<Real>::ImplicitStep(const StepPlan<Real>& plan, Threads& threads,
-                                 std::vector<Scratch<Real>>& scratch)
+                                 std::vector<Scratch<Real>>& scratch, Profile& profile)
     : plan_(plan),
       implicit_(*plan.implicit),
       returns_(plan.implicit->settings.mode == TangentMode::kExact ||
                plan.implicit->settings.mode == TangentMode::kProjected),
+      profile_(profile),
       sweep_(plan, threads, scratch),
       system_(sweep_, contacts_, plan.implicit->settings.preconditioner) {}
 
@@ -51,6 +52,7 @@ void ImplicitStep<Real>::follow_topology() {
 
 template <class Real>
 ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
+  const PhaseTimer timer(profile_, Phase::kNewton);
   sweep_.begin(state, dt);
   if (orders_ != state.counters.orders) follow_topology();
   carry_acceleration();
@@ -268,6 +270,19 @@ void ImplicitStep<Real>::linearize(const Vector& v) {
 
 template <class Real>
 typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve(double share, Vector& step) {
+  Profile linear;
+  const Solved solved = [&] {
+    const PhaseTimer timer(linear, Phase::kKrylov);
+    return solve_linear(share, step);
+  }();
+  const double seconds = linear.total();
+  profile_.seconds[static_cast<std::size_t>(Phase::kKrylov)] += seconds;
+  profile_.seconds[static_cast<std::size_t>(Phase::kNewton)] -= seconds;  // its clock is running
+  return solved;
+}
+
+template <class Real>
+typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve_linear(double share, Vector& step) {
   sweep_.for_each_block([&](std::size_t b) {
     std::memset(step.block(b), 0, kBlockValues * sizeof(Real));
     const Real* const r = residual_.block(b);

@@ -9,6 +9,7 @@
 
 #include <optional>
 
+#include "engine/base/profile.h"
 #include "engine/step/linear_solve.h"
 #include "engine/step/newton.h"
 #include "engine/step/tangent_system.h"
@@ -27,7 +28,8 @@ class ImplicitStep {
  public:
   using Vector = NodeField<Real>;
 
-  ImplicitStep(const StepPlan<Real>& plan, Threads& threads, std::vector<Scratch<Real>>& scratch);
+  ImplicitStep(const StepPlan<Real>& plan, Threads& threads, std::vector<Scratch<Real>>& scratch,
+               Profile& profile);
   ImplicitStep(const ImplicitStep&) = delete;
   ImplicitStep& operator=(const ImplicitStep&) = delete;
 
@@ -58,6 +60,7 @@ class ImplicitStep {
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
+  Solved solve_linear(double share, Vector& step);
   void follow_topology();
   void collect_holds();
   MaterialInput<Real> try_strain(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
@@ -71,6 +74,7 @@ class ImplicitStep {
   const StepPlan<Real>& plan_;
   const ImplicitPlan<Real>& implicit_;
   bool returns_;  // whether sand yields within the solve
+  Profile& profile_;
   BlockSweep<Real> sweep_;
   ContactSet<Real> contacts_;
   TangentSystem<Real> system_;

@@ -22,7 +22,7 @@ template <class Real>
 Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
     : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {
   if (plan_.rest) rest_.emplace(*plan_.rest);
-  if (plan_.implicit) implicit_.emplace(plan_, threads_, scratch_);
+  if (plan_.implicit) implicit_.emplace(plan_, threads_, scratch_, profile_);
 }
 
 template <class Real>
@@ -203,9 +203,9 @@ void Stepper<Real>::hold_block(NodeBlock<Real>& nodes) {
 /// Solves for the nodes' velocities, then holds them. Returns whether a solution was found.
 template <class Real>
 bool Stepper<Real>::solve(State<Real>& state, Real dt, StepReport& report) {
-  const PhaseTimer timer(profile_, Phase::kSolve);
   report.implicit = implicit_->solve(state, dt);
   if (!solved(report.implicit->newton.end)) return false;
+  const PhaseTimer timer(profile_, Phase::kNodes);
   for_each_block(state, [&](std::size_t block) {
     NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
     hold_block(nodes);
