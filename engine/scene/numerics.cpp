@@ -80,6 +80,7 @@ constexpr Choice kLinearMethods[] = {
 constexpr Choice kPreconditioners[] = {
     {"none", "nothing"},
     {"mass", "one over the mass of each node"},
+    {"blocks", "the inverse of the 3x3 block of each node"},
 };
 
 }  // namespace

@@ -44,6 +44,14 @@ void BlockSweep<Real>::push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, doub
                                                                                 chunk.rows);
 }
 
+template <class Real>
+void BlockSweep<Real>::add_stiffness(const Chunk<Real>& chunk, ImplicitScratch<Real>& own, const Real* tangent,
+                                     double scale) const {
+  const StiffnessInput<Real> in{chunk.particles, tangent, static_cast<Real>(scale), lattice_};
+  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].add_stiffness(in, own.arena.data(),
+                                                                                         own.second.data());
+}
+
 template class BlockSweep<float>;
 template class BlockSweep<double>;
 

@@ -15,6 +15,7 @@ namespace repose {
 template <class Real>
 struct ImplicitScratch {
   AlignedArray<Real> arena{kArenaValues};                   ///< what particles add to nodes
+  AlignedArray<Real> second{kArenaValues};                  ///< the same of a second vector
   AlignedArray<Real> strain{kStrainComponents * kChunk};    ///< trial strain
   AlignedArray<Real> matrix{kAffineComponents * kChunk};    ///< S or its change, by rows
   AlignedArray<Real> base{kArenaValues};                    ///< a second vector of the nodes, such as v^n
@@ -57,11 +58,18 @@ class BlockSweep {
   template <class Body>
   void over_particles(const Vector& from, const Vector* base, Vector& to, Body body);
 
+  /// The same for two vectors, of particles alone.
+  template <class Body>
+  void over_particles_twice(Vector& to, Vector& second, Body body);
+
   /// The gradient of the arena's vectors at the particles of a chunk, in chunk.moving_gradient.
   void gather_gradient(Chunk<Real>& chunk) const;
   /// That of the base, in own.gradient.
   void gather_base_gradient(const Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
   /// Adds -scale S g_i to the nodes, S in own.matrix.
+  /// Adds scale times the blocks of nodes to own.arena and own.second.
+  void add_stiffness(const Chunk<Real>& chunk, ImplicitScratch<Real>& own, const Real* tangent,
+                     double scale) const;
   void push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const;
 
  private:
@@ -107,6 +115,38 @@ void BlockSweep<Real>::over_particles(const Vector& from, const Vector* base, Ve
       for_each_chunk(state, owner, next, dt_, scratch,
                      [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });
       stencil.add_arena(own.arena.data(), rows, write);
+    });
+  }
+}
+
+template <class Real>
+template <class Body>
+void BlockSweep<Real>::over_particles_twice(Vector& to, Vector& second, Body body) {
+  State<Real>& state = *state_;
+  for_each_block([&](std::size_t block) {
+    std::memset(to.block(block), 0, kBlockValues * sizeof(Real));
+    std::memset(second.block(block), 0, kBlockValues * sizeof(Real));
+  });
+  const auto add_arena = plan_.kernels->stencil[plan_.transfer.stencil].add_arena;
+  for (int colour = 0; colour < 8; ++colour) {
+    const auto owners = state.grid.colour(colour);
+    threads_.for_each(owners.size(), [&](std::size_t i) {
+      const auto thread = static_cast<std::size_t>(Threads::index());
+      ImplicitScratch<Real>& own = own_[thread];
+      const auto owner = static_cast<std::size_t>(owners[i]);
+      std::memset(own.arena.data(), 0, kArenaValues * sizeof(Real));
+      std::memset(own.second.data(), 0, kArenaValues * sizeof(Real));
+      for_each_chunk(state, owner, owner, dt_, scratch_[thread],
+                     [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });
+      Real *write[kNeighbours], *write_second[kNeighbours];
+      const auto neighbours = state.grid.neighbours(owner);
+      for (std::size_t n = 0; n < kNeighbours; ++n) {
+        const bool there = neighbours[n] >= 0;
+        write[n] = there ? to.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
+        write_second[n] = there ? second.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
+      }
+      add_arena(own.arena.data(), state.rows_touched[owner], write);
+      add_arena(own.second.data(), state.rows_touched[owner], write_second);
     });
   }
 }

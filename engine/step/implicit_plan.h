@@ -14,7 +14,8 @@ namespace repose {
 /// What stands in for the inverse of the tangent in the norm of the linear solves.
 enum class Preconditioner {
   kNone,
-  kMass,  ///< 1 / m of each node
+  kMass,    ///< 1 / m of each node
+  kBlocks,  ///< the inverse of each node's own 3x3 block of the tangent
 };
 
 /// Which method solves the linear systems.

@@ -266,6 +266,7 @@ void ImplicitStep<Real>::linearize(const Vector& v) {
                           response.kernels.linearize[mode]({in, yield_surface(response, chunk.scratch),
                                                             response.unilateral, system_.tangent(k, chunk)});
                         });
+  system_.prepare();
 }
 
 template <class Real>

@@ -1,6 +1,9 @@
 #include "engine/step/tangent_system.h"
 
+#include <Eigen/Eigenvalues>
 #include <cstring>
+
+#include "engine/base/vector.h"
 
 namespace repose {
 
@@ -19,6 +22,10 @@ void TangentSystem<Real>::follow_topology() {
     }
   }
   tangents_.reserve_uninitialized(groups * kTangentGroup * kTangentValues);
+  if (preconditioner_ == Preconditioner::kBlocks) {
+    diagonal_ = vector();
+    side_ = vector();
+  }
 }
 
 template <class Real>
@@ -54,8 +61,63 @@ void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
   });
 }
 
+namespace {
+
+/// The inverse of m + K, with eigenvalues of no less than m: what is left of K where sand has given way may not
+/// be definite.
+template <class Real>
+void invert_block(Real mass, Real* diagonal, Real* side) {
+  Mat3 block = Mat3::Zero();
+  block.diagonal() << static_cast<double>(diagonal[0]), static_cast<double>(diagonal[1]),
+      static_cast<double>(diagonal[2]);
+  block(1, 0) = static_cast<double>(side[0]);
+  block(2, 0) = static_cast<double>(side[1]);
+  block(2, 1) = static_cast<double>(side[2]);
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(block);  // reads the lower triangle
+  const auto m = static_cast<double>(mass);
+  const Vec3 weight = (eigen.eigenvalues().cwiseMax(0.0).array() + m).inverse();
+  const Mat3 inverse = eigen.eigenvectors() * weight.asDiagonal() * eigen.eigenvectors().transpose();
+  for (int c = 0; c < 3; ++c) diagonal[c] = static_cast<Real>(inverse(c, c));
+  side[0] = static_cast<Real>(inverse(1, 0));
+  side[1] = static_cast<Real>(inverse(2, 0));
+  side[2] = static_cast<Real>(inverse(2, 1));
+}
+
+}  // namespace
+
+template <class Real>
+void TangentSystem<Real>::prepare() {
+  if (preconditioner_ != Preconditioner::kBlocks) return;
+  const double square_dt = static_cast<double>(sweep_.dt()) * static_cast<double>(sweep_.dt());
+  sweep_.over_particles_twice(
+      diagonal_, side_, [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+        sweep_.add_stiffness(chunk, own, tangent(set, chunk), square_dt * chunk.set.particle_volume);
+      });
+  sweep_.for_each_block([&](std::size_t b) {
+    const Real* const nodes = sweep_.state().nodes.block(b);
+    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+      if (nodes[at] > Real(0)) invert_block(nodes[at], diagonal_.block(b) + at + 1, side_.block(b) + at + 1);
+    }
+  });
+}
+
 template <class Real>
 void TangentSystem<Real>::precondition(const Vector& r, Vector& z) {
+  if (preconditioner_ == Preconditioner::kBlocks) {
+    sweep_.for_each_block([&](std::size_t b) {
+      const Real *const from = r.block(b), *const d = diagonal_.block(b), *const s = side_.block(b);
+      Real* const to = z.block(b);
+      for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+        const Real x = from[at + 1], y = from[at + 2], w = from[at + 3];
+        to[at] = Real(0);
+        to[at + 1] = d[at + 1] * x + s[at + 1] * y + s[at + 2] * w;
+        to[at + 2] = s[at + 1] * x + d[at + 2] * y + s[at + 3] * w;
+        to[at + 3] = s[at + 2] * x + s[at + 3] * y + d[at + 3] * w;
+      }
+      contacts_.project(b, to);
+    });
+    return;
+  }
   const bool plain = preconditioner_ == Preconditioner::kNone;
   sweep_.for_each_block([&](std::size_t b) {
     const Real* const nodes = sweep_.state().nodes.block(b);

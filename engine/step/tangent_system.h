@@ -25,6 +25,9 @@ class TangentSystem {
   /// Where the tangents of a chunk begin (kTangentValues numbers a particle, in groups).
   Real* tangent(std::size_t set, const Chunk<Real>& chunk);
 
+  /// After each linearisation: what the preconditioner is made of.
+  void prepare();
+
   // What Krylov solvers ask for (engine/step/krylov.h).
   Vector vector() const;
   void apply(const Vector& x, Vector& y);
@@ -35,7 +38,7 @@ class TangentSystem {
   void copy(const Vector& x, Vector& y) const;
   void shift(double delta) { shift_ = delta; }
 
-  std::size_t bytes() const { return tangents_.bytes(); }
+  std::size_t bytes() const { return tangents_.bytes() + diagonal_.bytes() + side_.bytes(); }
 
  private:
   BlockSweep<Real>& sweep_;
@@ -44,6 +47,7 @@ class TangentSystem {
   AlignedArray<Real> tangents_;
   std::vector<std::vector<std::size_t>> begin_;  // per set and owner, in groups
   double shift_ = 0.0;
+  Vector diagonal_, side_;  // of the inverses of the blocks: [0, xx, yy, zz] and [0, xy, xz, yz] a node
 };
 
 }  // namespace repose

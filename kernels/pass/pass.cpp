@@ -14,6 +14,7 @@ KernelTables make_tables(Target target) {
   fill_material(target, tables);
   fill_particles(target, tables);
   fill_yield(target, tables);
+  fill_node_stiffness(target, tables);
   fill_stiffness(target, tables);
   fill_nodes(target, tables);
   return tables;

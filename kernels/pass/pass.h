@@ -146,6 +146,15 @@ struct PushInput {
   Lattice<Real> lattice;
 };
 
+/// The 3x3 blocks of nodes that the tangents of particles add up to.
+template <class Real>
+struct StiffnessInput {
+  ParticleSpan<Real> particles;  ///< positions are read
+  const Real* tangent;           ///< of the first
+  Real scale;                    ///< such as dt^2 V0
+  Lattice<Real> lattice;
+};
+
 template <class Real>
 struct MaterialKernels {
   void (*trial)(const MaterialInput<Real>&);  ///< strain <- elastic trial strain after dt of the gradient
@@ -168,6 +177,8 @@ struct TransferKernels {
   /// The gradient alone, and the push that is its transpose: momentum and rows as in scatter.
   void (*gradient)(const GatherInput<Real>&, const Real* arena);
   void (*push)(const PushInput<Real>&, Real* arena, std::uint64_t& rows);
+  /// Adds the symmetric blocks of nodes to two arenas, [0, xx, yy, zz] and [0, xy, xz, yz] a node.
+  void (*add_stiffness)(const StiffnessInput<Real>&, Real* diagonal, Real* side);
 };
 
 template <class Real>

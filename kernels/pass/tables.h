@@ -59,6 +59,7 @@ void fill_material(Target target, KernelTables& tables);
 void fill_particles(Target target, KernelTables& tables);
 void fill_yield(Target target, KernelTables& tables);
 void fill_nodes(Target target, KernelTables& tables);
+void fill_node_stiffness(Target target, KernelTables& tables);
 void fill_stiffness(Target target, KernelTables& tables);
 
 }  // namespace repose

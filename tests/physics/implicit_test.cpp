@@ -93,7 +93,7 @@ TEST(Implicit, ThreadsAndCheckpoints_SameBits) {
   // Without this the library would never start more threads than the machine has cores.
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 7);
   for (const char* mode : {"exact", "projected", "lagged", "unilateral"}) {
-    for (const char* preconditioner : {"none", "mass"}) {
+    for (const char* preconditioner : {"none", "mass", "blocks"}) {
       expect_same_bits(
           {std::string("implicit.mode=") + mode, std::string("implicit.preconditioner=") + preconditioner});
     }
