@@ -55,10 +55,13 @@ Result<Table> study_iteration(const StudyArguments& arguments) {
       const auto& seconds = run->simulation->profile().seconds;
       const double linear = nanoseconds(*run, seconds[static_cast<std::size_t>(Phase::kKrylov)], run->linear);
       const double rest = nanoseconds(*run, seconds[static_cast<std::size_t>(Phase::kNewton)], run->newton);
+      // Iterations of tries that were given up are not counted, their time is.
+      const bool counted = run->redone == 0 && run->end != RunEnd::kFailed;
       add_row(table, {"`" + mode + "`", with_digits(longest, 2), particles,
                       with_digits(nanoseconds(*run, run->simulation->profile().total(), run->steps), 3),
-                      with_digits(linear, 3), with_digits(linear / step, 2), with_digits(rest, 3),
-                      run->newton_per_step(), run->linear_per_step(), run->stopped()});
+                      counted ? with_digits(linear, 3) : "", counted ? with_digits(linear / step, 2) : "",
+                      counted ? with_digits(rest, 3) : "", run->newton_per_step(), run->linear_per_step(),
+                      counted ? run->stopped() : "steps were redone"});
     }
   }
   return table;
