@@ -23,17 +23,26 @@ struct Profile {
   }
 };
 
-/// Adds the time until its end to one phase.
+/// Adds the time until its end to one phase, and takes it from another one within which it runs, if there is
+/// one.
 class PhaseTimer {
  public:
-  PhaseTimer(Profile& profile, Phase phase) : seconds_(profile.seconds[static_cast<std::size_t>(phase)]) {}
-  ~PhaseTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  PhaseTimer(Profile& profile, Phase phase) : seconds_(&profile.seconds[static_cast<std::size_t>(phase)]) {}
+  PhaseTimer(Profile& profile, Phase phase, Phase around) : PhaseTimer(profile, phase) {
+    around_ = &profile.seconds[static_cast<std::size_t>(around)];
+  }
+  ~PhaseTimer() {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    *seconds_ += seconds;
+    if (around_ != nullptr) *around_ -= seconds;
+  }
   PhaseTimer(const PhaseTimer&) = delete;
   PhaseTimer& operator=(const PhaseTimer&) = delete;
 
  private:
   using Clock = std::chrono::steady_clock;
-  double& seconds_;
+  double* seconds_;
+  double* around_ = nullptr;
   Clock::time_point start_ = Clock::now();
 };
 

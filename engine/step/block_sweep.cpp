@@ -12,25 +12,32 @@ void BlockSweep<Real>::begin(State<Real>& state, Real dt) {
 }
 
 template <class Real>
-void BlockSweep<Real>::gather(const Chunk<Real>& chunk, const Real* arena, Real* gradient) const {
-  GatherInput<Real> in{};
-  in.particles = chunk.particles;
-  in.lattice = lattice_;
-  for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = gradient + k * kChunk;
-  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gradient(in, arena);
-}
-
-template <class Real>
-void BlockSweep<Real>::gather_gradient(Chunk<Real>& chunk) const {
-  gather(chunk, chunk.scratch.arena.data(), chunk.scratch.gradient.data());
-  for (std::size_t k = 0; k < kAffineComponents; ++k) {
-    chunk.moving_gradient[k] = chunk.scratch.gradient.data() + k * kChunk;
+void BlockSweep<Real>::follow_topology() {
+  room_ = 0;
+  places_.resize(state_->sets.size());
+  for (std::size_t set = 0; set < places_.size(); ++set) {
+    const auto& begin = state_->sets[set].begin;
+    places_[set].clear();
+    for (std::size_t owner = 0; owner + 1 < begin.size(); ++owner) {
+      places_[set].push_back(room_);
+      room_ += whole_groups(begin[owner + 1] - begin[owner]);
+    }
   }
 }
 
 template <class Real>
-void BlockSweep<Real>::gather_base_gradient(const Chunk<Real>& chunk, ImplicitScratch<Real>& own) const {
-  gather(chunk, own.base.data(), own.gradient.data());
+void BlockSweep<Real>::clear(Vector& nodes) {
+  for_each_block([&](std::size_t block) { std::memset(nodes.block(block), 0, kBlockValues * sizeof(Real)); });
+}
+
+template <class Real>
+void BlockSweep<Real>::gather_gradient(const Chunk<Real>& chunk, const Real* arena,
+                                       Real* const gradient[9]) const {
+  GatherInput<Real> in{};
+  in.particles = chunk.particles;
+  in.lattice = lattice_;
+  std::copy_n(gradient, kAffineComponents, in.gradient);
+  plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gradient(in, arena);
 }
 
 template <class Real>

@@ -1,7 +1,9 @@
-// Repose: how an implicit step goes over the blocks: all nodes, or all particles in the order of colours with
-// the nodes around them in an arena. One per stepper; it keeps what passes over a chunk hand on.
+// Repose: how an implicit step goes over the blocks: all nodes, or all particles, in the order of colours where
+// they write to nodes, with the nodes around them in arenas. One per stepper; it keeps what passes over a chunk
+// hand on.
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <vector>
 
@@ -14,12 +16,19 @@ namespace repose {
 /// What passes of an implicit step hand on within a chunk, beside Scratch; one per thread.
 template <class Real>
 struct ImplicitScratch {
-  AlignedArray<Real> arena{kArenaValues};                   ///< what particles add to nodes
-  AlignedArray<Real> second{kArenaValues};                  ///< the same of a second vector
-  AlignedArray<Real> strain{kStrainComponents * kChunk};    ///< trial strain
-  AlignedArray<Real> matrix{kAffineComponents * kChunk};    ///< S or its change, by rows
-  AlignedArray<Real> base{kArenaValues};                    ///< a second vector of the nodes, such as v^n
-  AlignedArray<Real> gradient{kAffineComponents * kChunk};  ///< of that one
+  AlignedArray<Real> arena{kArenaValues};                 ///< what particles add to nodes
+  AlignedArray<Real> second{kArenaValues};                ///< the same of a second vector
+  AlignedArray<Real> strain{kStrainComponents * kChunk};  ///< trial strain, then the one that is returned
+  AlignedArray<Real> matrix{kAffineComponents * kChunk};  ///< S or its change, by rows
+};
+
+/// The vectors of nodes that a sweep over particles reads and adds to; none where null.
+template <class Real>
+struct SweptNodes {
+  const NodeField<Real>* from = nullptr;  ///< in the arena of the chunk's scratch
+  NodeField<Real>* to = nullptr;          ///< cleared, then what is added to the arena of ImplicitScratch
+  NodeField<Real>* second = nullptr;      ///< the same of its second arena
+  bool adds = false;                      ///< whether those two are not cleared
 };
 
 template <class Real>
@@ -32,6 +41,8 @@ class BlockSweep {
 
   /// What the following calls are about.
   void begin(State<Real>& state, Real dt);
+  /// After each order event, within begin() and before any sweep.
+  void follow_topology();
   State<Real>& state() const { return *state_; }
   Real dt() const { return dt_; }
   const Kernels<Real>& kernels() const { return *plan_.kernels; }
@@ -42,111 +53,108 @@ class BlockSweep {
     constexpr std::size_t kGrain = 8;
     threads_.for_each(state_->grid.size(), body, kGrain);
   }
-  /// Adds up what body(block) returns, in the order of blocks.
+  /// Adds up the arrays of numbers that body(block) returns, in the order of blocks.
   template <class Body>
-  double sum_of_blocks(Body body) {
-    partial_.resize(state_->grid.size());
-    for_each_block([&](std::size_t block) { partial_[block] = body(block); });
-    double sum = 0.0;
-    for (const double part : partial_) sum += part;
-    return sum;
+  auto sums_of_blocks(Body body) {
+    using Sums = decltype(body(std::size_t{}));
+    constexpr std::size_t kSums = std::tuple_size_v<Sums>;
+    partial_.resize(state_->grid.size() * kSums);
+    for_each_block([&](std::size_t block) {
+      const Sums parts = body(block);
+      std::copy(parts.begin(), parts.end(), partial_.begin() + static_cast<std::ptrdiff_t>(block * kSums));
+    });
+    Sums sums{};
+    for (std::size_t k = 0; k < partial_.size(); ++k) sums[k % kSums] += partial_[k];
+    return sums;
   }
 
-  /// Calls body(set, chunk, own) for all particles, with the nodes of `from` in the arena of the chunk's
-  /// scratch, and those of `base`, if there is one, in own.base. What the body adds to the arena of `own` goes
-  /// to `to`, which is cleared before.
+  /// Calls body(set, chunk, own) for all particles.
   template <class Body>
-  void over_particles(const Vector& from, const Vector* base, Vector& to, Body body);
+  void over_particles(const SweptNodes<Real>& nodes, Body body);
 
-  /// The same for two vectors, of particles alone.
-  template <class Body>
-  void over_particles_twice(Vector& to, Vector& second, Body body);
+  /// Where the numbers of a chunk begin in an array of `values` numbers for each of room() particles: number k
+  /// of its particle p at k * stride(chunk) + p.
+  std::size_t place(std::size_t set, const Chunk<Real>& chunk) const {
+    return places_[set][chunk.owner] + (chunk.first - chunk.set.begin[chunk.owner]);
+  }
+  static std::size_t stride(const Chunk<Real>& chunk) { return whole_groups(chunk.particles.count); }
+  std::size_t room() const { return room_; }
 
-  /// The gradient of the arena's vectors at the particles of a chunk, in chunk.moving_gradient.
-  void gather_gradient(Chunk<Real>& chunk) const;
-  /// That of the base, in own.gradient.
-  void gather_base_gradient(const Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
+  /// The gradient of an arena's vectors at the particles of a chunk.
+  void gather_gradient(const Chunk<Real>& chunk, const Real* arena, Real* const gradient[9]) const;
   /// Adds -scale S g_i to the nodes, S in own.matrix.
+  void push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const;
   /// Adds scale times the blocks of nodes to own.arena and own.second.
   void add_stiffness(const Chunk<Real>& chunk, ImplicitScratch<Real>& own, const Real* tangent,
                      double scale) const;
-  void push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const;
 
  private:
-  void gather(const Chunk<Real>& chunk, const Real* arena, Real* gradient) const;
+  static std::size_t whole_groups(std::size_t particles) {
+    return (particles + kTangentGroup - 1) / kTangentGroup * kTangentGroup;
+  }
+  template <class Body>
+  void over_owner(const SweptNodes<Real>& nodes, std::size_t owner, std::size_t next, Body& body);
+  void clear(Vector& nodes);
+  /// The blocks around an owner in a vector; null where there is none.
+  template <class Value, class Field>
+  std::array<Value*, kNeighbours> around(std::size_t owner, Field& field) const;
 
   const StepPlan<Real>& plan_;
   Threads& threads_;
   std::vector<Scratch<Real>>& scratch_;
   std::vector<ImplicitScratch<Real>> own_;
-  std::vector<double> partial_;  // per block
+  std::vector<double> partial_;                   // per block
+  std::vector<std::vector<std::size_t>> places_;  // per set and owner
+  std::size_t room_ = 0;                          // particles, each owner's of a set in whole groups
   Lattice<Real> lattice_{};
   State<Real>* state_ = nullptr;
   Real dt_ = 0;
 };
 
 template <class Real>
+template <class Value, class Field>
+std::array<Value*, kNeighbours> BlockSweep<Real>::around(std::size_t owner, Field& field) const {
+  std::array<Value*, kNeighbours> blocks;
+  const auto neighbours = state_->grid.neighbours(owner);
+  for (std::size_t n = 0; n < kNeighbours; ++n) {
+    blocks[n] = neighbours[n] >= 0 ? field.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
+  }
+  return blocks;
+}
+
+template <class Real>
 template <class Body>
-void BlockSweep<Real>::over_particles(const Vector& from, const Vector* base, Vector& to, Body body) {
-  State<Real>& state = *state_;
-  for_each_block([&](std::size_t block) { std::memset(to.block(block), 0, kBlockValues * sizeof(Real)); });
+void BlockSweep<Real>::over_owner(const SweptNodes<Real>& nodes, std::size_t owner, std::size_t next,
+                                  Body& body) {
+  const auto thread = static_cast<std::size_t>(Threads::index());
+  Scratch<Real>& scratch = scratch_[thread];
+  ImplicitScratch<Real>& own = own_[thread];
   const auto& stencil = plan_.kernels->stencil[plan_.transfer.stencil];
-  for (int colour = 0; colour < 8; ++colour) {
-    const auto owners = state.grid.colour(colour);
-    threads_.for_each(owners.size(), [&](std::size_t i) {
-      const auto thread = static_cast<std::size_t>(Threads::index());
-      Scratch<Real>& scratch = scratch_[thread];
-      ImplicitScratch<Real>& own = own_[thread];
-      const auto owner = static_cast<std::size_t>(owners[i]);
-      const auto next = static_cast<std::size_t>(i + 1 < owners.size() ? owners[i + 1] : owners[i]);
-      const Real *read[kNeighbours], *second[kNeighbours];
-      Real* write[kNeighbours];
-      const auto neighbours = state.grid.neighbours(owner);
-      for (std::size_t n = 0; n < kNeighbours; ++n) {
-        const bool there = neighbours[n] >= 0;
-        read[n] = there ? from.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
-        second[n] = there && base ? base->block(static_cast<std::size_t>(neighbours[n])) : nullptr;
-        write[n] = there ? to.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
-      }
-      const std::uint64_t rows = state.rows_touched[owner];
-      stencil.load_arena(scratch.arena.data(), rows, read);
-      if (base) stencil.load_arena(own.base.data(), rows, second);
-      std::memset(own.arena.data(), 0, kArenaValues * sizeof(Real));
-      for_each_chunk(state, owner, next, dt_, scratch,
-                     [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });
-      stencil.add_arena(own.arena.data(), rows, write);
-    });
+  const std::uint64_t rows = state_->rows_touched[owner];
+  if (nodes.from != nullptr) {
+    stencil.load_arena(scratch.arena.data(), rows, around<const Real>(owner, *nodes.from).data());
+  }
+  if (nodes.to != nullptr) std::memset(own.arena.data(), 0, kArenaValues * sizeof(Real));
+  if (nodes.second != nullptr) std::memset(own.second.data(), 0, kArenaValues * sizeof(Real));
+  for_each_chunk(*state_, owner, next, dt_, scratch,
+                 [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });
+  if (nodes.to != nullptr) stencil.add_arena(own.arena.data(), rows, around<Real>(owner, *nodes.to).data());
+  if (nodes.second != nullptr) {
+    stencil.add_arena(own.second.data(), rows, around<Real>(owner, *nodes.second).data());
   }
 }
 
 template <class Real>
 template <class Body>
-void BlockSweep<Real>::over_particles_twice(Vector& to, Vector& second, Body body) {
-  State<Real>& state = *state_;
-  for_each_block([&](std::size_t block) {
-    std::memset(to.block(block), 0, kBlockValues * sizeof(Real));
-    std::memset(second.block(block), 0, kBlockValues * sizeof(Real));
-  });
-  const auto add_arena = plan_.kernels->stencil[plan_.transfer.stencil].add_arena;
+void BlockSweep<Real>::over_particles(const SweptNodes<Real>& nodes, Body body) {
+  for (Vector* const vector : {nodes.to, nodes.second}) {
+    if (vector != nullptr && !nodes.adds) clear(*vector);
+  }
   for (int colour = 0; colour < 8; ++colour) {
-    const auto owners = state.grid.colour(colour);
+    const auto owners = state_->grid.colour(colour);
     threads_.for_each(owners.size(), [&](std::size_t i) {
-      const auto thread = static_cast<std::size_t>(Threads::index());
-      ImplicitScratch<Real>& own = own_[thread];
-      const auto owner = static_cast<std::size_t>(owners[i]);
-      std::memset(own.arena.data(), 0, kArenaValues * sizeof(Real));
-      std::memset(own.second.data(), 0, kArenaValues * sizeof(Real));
-      for_each_chunk(state, owner, owner, dt_, scratch_[thread],
-                     [&](std::size_t set, Chunk<Real>& chunk) { body(set, chunk, own); });
-      Real *write[kNeighbours], *write_second[kNeighbours];
-      const auto neighbours = state.grid.neighbours(owner);
-      for (std::size_t n = 0; n < kNeighbours; ++n) {
-        const bool there = neighbours[n] >= 0;
-        write[n] = there ? to.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
-        write_second[n] = there ? second.block(static_cast<std::size_t>(neighbours[n])) : nullptr;
-      }
-      add_arena(own.arena.data(), state.rows_touched[owner], write);
-      add_arena(own.second.data(), state.rows_touched[owner], write_second);
+      const auto next = owners[i + 1 < owners.size() ? i + 1 : i];
+      over_owner(nodes, static_cast<std::size_t>(owners[i]), static_cast<std::size_t>(next), body);
     });
   }
 }

@@ -45,27 +45,31 @@ class ConjugateResidual {
   /// rise.
   void iterate(System& system, Vector& x, ResidualWatch& watch, bool first) {
     system.apply(z_, w_);
-    double ww = 0.0;  // |w|_P^2; w = q - beta q_old, and q is conjugate to q_old
-    if (first) {
-      system.copy(z_, p_);
-      system.copy(w_, q_);
-    } else {
-      const double beta = -system.dot(w_, s_) / qq_;
-      ww = beta * beta * qq_;
-      system.scale_add(z_, beta, p_);
-      system.scale_add(w_, beta, q_);
-    }
-    system.precondition(q_, s_);
-    qq_ = system.dot(q_, s_);
-    ww += qq_;
-    const double zq = system.dot(z_, q_);
-    if (watch.dead_end(zq, qq_, ww)) return;
+    const double beta = first ? 0.0 : -dot(system, w_, s_) / qq_;
+    // |w|_P^2, for w = q - beta q_old and q is conjugate to q_old
+    const double old = first ? 0.0 : beta * beta * qq_;
+    const auto [qq, zq] = system.sums([&](const auto& part) {
+      if (first) {
+        part.copy(z_, p_);
+        part.copy(w_, q_);
+      } else {
+        part.scale_add(z_, beta, p_);
+        part.scale_add(w_, beta, q_);
+      }
+      part.precondition(q_, s_);
+      return std::array{part.dot(q_, s_), part.dot(z_, q_)};
+    });
+    qq_ = qq;
+    if (watch.dead_end(zq, qq, old + qq)) return;
 
-    const double alpha = zq / qq_;
-    system.add(alpha, p_, x);
-    system.add(-alpha, q_, r_);
-    system.add(-alpha, s_, z_);
-    watch.advance(system.dot(r_, z_));
+    const double alpha = zq / qq;
+    const auto [rr] = system.sums([&](const auto& part) {
+      part.add(alpha, p_, x);
+      part.add(-alpha, q_, r_);
+      part.add(-alpha, s_, z_);
+      return std::array{part.dot(r_, z_)};
+    });
+    watch.advance(rr);
   }
 
   Vector r_, z_, w_;  // residual, P r, A P r

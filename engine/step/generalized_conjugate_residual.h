@@ -31,6 +31,7 @@ class GeneralizedConjugateResidual {
       : r_(system.vector()), z_(system.vector()), s_(system.vector()) {
     const int slots = std::max(directions, 1) + 1;  // one is for the direction in the making
     for (int j = 0; j < slots; ++j) kept_.push_back({system.vector(), system.vector(), 0.0});
+    betas_.reserve(kept_.size());
   }
 
   /// Solves A x = b from the x that is given.
@@ -60,20 +61,25 @@ class GeneralizedConjugateResidual {
   /// p = seed + sum of beta_j p_j with q = A p conjugate to every q_j, in the norm of P; then the best step
   /// along it. Returns whether it led anywhere; if not, s is P A p.
   bool iterate(System& system, Vector& x, ResidualWatch& watch, const Vector& seed, std::size_t made) {
-    auto& [p, q, qq] = kept_[made % kept_.size()];
-    system.copy(seed, p);
-    system.apply(p, q);
-    system.precondition(q, s_);
-    const double ww = system.dot(q, s_);
-    for (std::size_t j = made - std::min(made, kept_.size() - 1); j < made; ++j) {
-      const Direction& old = kept_[j % kept_.size()];
-      const double beta = -system.dot(s_, old.q) / old.qq;
-      system.add(beta, old.p, p);
-      system.add(beta, old.q, q);
-    }
-    system.precondition(q, s_);
-    qq = system.dot(q, s_);
-    const double zq = system.dot(z_, q);
+    Direction& made_now = kept_[made % kept_.size()];
+    Vector &p = made_now.p, &q = made_now.q;
+    system.apply(seed, q);
+    const auto [ww] = system.sums([&](const auto& part) {
+      part.copy(seed, p);  // which may be s
+      part.precondition(q, s_);
+      return std::array{part.dot(q, s_)};
+    });
+    const std::size_t oldest = made - std::min(made, kept_.size() - 1);
+    find_betas(system, oldest, made);
+    const auto [qq, zq] = system.sums([&](const auto& part) {
+      for (std::size_t j = oldest; j < made; ++j) {
+        part.add(betas_[j - oldest], old(j).p, p);
+        part.add(betas_[j - oldest], old(j).q, q);
+      }
+      part.precondition(q, s_);
+      return std::array{part.dot(q, s_), part.dot(z_, q)};
+    });
+    made_now.qq = qq;
     // Where A P r itself is next to nothing r is all but in the null space of A, and no direction leads on.
     const bool seen = &seed != &z_ || std::sqrt(ww) > kNowhere * watch.scale() * watch.norm();
     const bool nowhere = qq > 0.0 && std::abs(zq) <= kNowhere * watch.norm() * std::sqrt(qq);
@@ -86,16 +92,38 @@ class GeneralizedConjugateResidual {
     if (watch.dead_end(zq, qq, ww)) return true;
 
     const double alpha = zq / qq;
-    system.add(alpha, p, x);
-    system.add(-alpha, q, r_);
-    system.add(-alpha, s_, z_);
-    watch.advance(system.dot(r_, z_));
+    const auto [rr] = system.sums([&](const auto& part) {
+      part.add(alpha, p, x);
+      part.add(-alpha, q, r_);
+      part.add(-alpha, s_, z_);
+      return std::array{part.dot(r_, z_)};
+    });
+    watch.advance(rr);
     return true;
+  }
+
+  Direction& old(std::size_t j) { return kept_[j % kept_.size()]; }
+
+  /// beta_j = -s^T q_j / (q_j^T P q_j) for the directions from `oldest` up to `made`, s = P A p. Some at a
+  /// time, so that s is read once for all of those.
+  void find_betas(System& system, std::size_t oldest, std::size_t made) {
+    constexpr std::size_t kTogether = 4;
+    betas_.clear();
+    for (std::size_t first = oldest; first < made; first += kTogether) {
+      const std::size_t count = std::min(kTogether, made - first);
+      const auto products = system.sums([&](const auto& part) {
+        std::array<double, kTogether> parts{};
+        for (std::size_t k = 0; k < count; ++k) parts[k] = part.dot(s_, old(first + k).q);
+        return parts;
+      });
+      for (std::size_t k = 0; k < count; ++k) betas_.push_back(-products[k] / old(first + k).qq);
+    }
   }
 
   Vector r_, z_, s_;             // residual, P r, P q
   std::vector<Direction> kept_;  // direction k is in k modulo their number
-  std::size_t blind_ = 0;        // directions in a row that led nowhere
+  std::vector<double> betas_;
+  std::size_t blind_ = 0;  // directions in a row that led nowhere
 };
 
 }  // namespace repose

@@ -1,18 +1,13 @@
-// Repose: the implicit step, backward Euler on the velocities of the active nodes (Klar et al. 2016,
-// supplement):
-//   r_i(v) = m_i (v_i - v_i^free) - dt f_i(v) = 0,   f_i = -sum_p V0 S_p g_ip,   S = tau(Z(b(v))) (I + dt grad
-//   v)^-T
-// where v^free has all forces but stress. Nothing is assembled: residual and tangent are passes over the same
-// blocks, in the same colours, as the transfers; vectors are node fields over the blocks that hold material,
-// zero where a node is empty.
+// Repose: the implicit step, from a first guess over Newton's method to the velocities that the nodes keep.
+// What it solves is engine/step/momentum_balance.h.
 #pragma once
 
 #include <optional>
 
 #include "engine/base/profile.h"
 #include "engine/step/linear_solve.h"
+#include "engine/step/momentum_balance.h"
 #include "engine/step/newton.h"
-#include "engine/step/tangent_system.h"
 
 namespace repose {
 
@@ -43,50 +38,42 @@ class ImplicitStep {
   std::size_t bytes() const;
 
   // What Newton's method asks for (engine/step/newton.h).
-  Vector vector() const { return system_.vector(); }
-  std::optional<double> evaluate(const Vector& v);
+  std::optional<double> evaluate(const Vector& v) { return balance_.evaluate(v); }
+  double scale() const { return balance_.scale(); }
+  bool has_energy() const;
+  double slope(const Vector& step) { return dot(system_, balance_.residual(), step); }
   bool change_contacts(Vector& v);
-  void linearize(const Vector& v);
+  void linearize() { balance_.linearize(); }
   struct Solved {
     int iterations = 0;
     bool good = false;
     bool usable() const { return good; }
   };
   Solved solve(double share, Vector& step);
-  double scale() const { return scale_; }
-  bool has_energy() const;
-  double slope(const Vector& step) { return system_.dot(residual_, step); }
-  double reach(const Vector& v, const Vector& step);
+  double reach(const Vector& step, double length) { return balance_.reach(step, length); }
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
-  Solved solve_linear(double share, Vector& step);
   void follow_topology();
   void collect_holds();
-  MaterialInput<Real> try_strain(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
-  bool stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
-  void finish_residual(std::size_t block, const Real* v, Real* r);
   void carry_acceleration();
-  void start();
+  std::optional<double> start();
+  std::optional<double> start_at(Vector& v, bool by_rate);
   void publish(const Vector& v);
-  double mass_norm_of_forces();
 
   const StepPlan<Real>& plan_;
   const ImplicitPlan<Real>& implicit_;
-  bool returns_;  // whether sand yields within the solve
   Profile& profile_;
   BlockSweep<Real> sweep_;
   ContactSet<Real> contacts_;
   TangentSystem<Real> system_;
+  MomentumBalance<Real> balance_;
   std::optional<LinearSolve<TangentSystem<Real>>> symmetric_;
   std::optional<LinearSolve<TangentSystem<Real>, GeneralizedConjugateResidual<TangentSystem<Real>>>> general_;
 
-  // Unknown is dv = v - v^n: what is small beside v keeps its digits in single precision.
-  Vector v_, step_, trial_, residual_, right_;
-  bool accelerated_ = false;   // whether the last step is known
-  double scale_ = 1.0;         // the larger of outer and inner impulses, the least that was seen in this solve
-  std::vector<double> inner_;  // per block: |dt f_int|^2 in the norm of the inverse mass
-  std::int64_t orders_ = -1;   // of the topology that vectors are made for
+  Vector v_, step_, trial_, right_;  // of dv
+  bool accelerated_ = false;         // whether the last step is known
+  std::int64_t orders_ = -1;         // of the topology that vectors are made for
   SolveStatus linear_ = SolveStatus::kConverged;
 };
 

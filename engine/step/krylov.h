@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -14,29 +15,61 @@ namespace repose {
 
 /// A linear system A x = b with a preconditioner P, symmetric and positive definite. Residuals r = b - A x are
 /// measured in its norm, |r|_P = sqrt(r^T P r): with P the inverse mass it weighs all nodes alike.
-/// Constraints are projected inside: with a projector Q, `apply` is Q A Q and `precondition` Q P Q. Solvers
-/// then change no constrained component of x, and take no notice of one of b.
+/// Constraints are projected inside: with a projector Q, `precondition` is Q P Q. Solvers then change no
+/// constrained component of x, and take no notice of one of b or of A x.
 ///   Real                       what vectors are stored in; its rounding decides what counts as zero
 ///   Vector                     owns its storage; moved, never copied
 ///   vector()                   a new one, zero; solvers ask only when they are made
 ///   apply(x, y)                y = A x
-///   precondition(r, z)         z = P r
-///   dot(x, y)                  x^T y summed in double in a fixed order, or the bits depend on threads
+///   parts(body)                body(part) for every part of all vectors; what it does with a part it does
+///   while
+///                              that is in cache
+///   sums(body)                 the same, and adds up the std::array of numbers that body returns, in double
+///   and in
+///                              a fixed order, or the bits depend on threads
+/// and of a Part:
+///   precondition(r, z)         z = P r; P couples no parts
+///   dot(x, y)                  its share of x^T y
 ///   add(a, x, y)               y += a x
 ///   scale_add(x, b, y)         y = x + b y
 ///   copy(x, y)                 y = x
+template <class Part, class Vector>
+concept VectorPart = requires(const Part& part, const Vector& x, Vector& y, double a) {
+  part.precondition(x, y);
+  { part.dot(x, x) } -> std::same_as<double>;
+  part.add(a, x, y);
+  part.scale_add(x, a, y);
+  part.copy(x, y);
+};
 template <class System>
 concept LinearSystem = std::floating_point<typename System::Real> && std::movable<typename System::Vector> &&
+    VectorPart<typename System::Part, typename System::Vector> &&
     requires(System& system, const System& fixed, const typename System::Vector& x, typename System::Vector& y,
-             double a) {
+             void (*work)(const typename System::Part&),
+             std::array<double, 1> (*sum)(const typename System::Part&)) {
   { fixed.vector() } -> std::same_as<typename System::Vector>;
   system.apply(x, y);
-  system.precondition(x, y);
-  { system.dot(x, x) } -> std::same_as<double>;
-  system.add(a, x, y);
-  system.scale_add(x, a, y);
-  system.copy(x, y);
+  system.parts(work);
+  { system.sums(sum) } -> std::same_as<std::array<double, 1>>;
 };
+
+/// x^T y and the other verbs of parts, on whole vectors.
+template <class System, class Vector = typename System::Vector>
+double dot(System& system, const Vector& x, const Vector& y) {
+  return system.sums([&](const auto& part) { return std::array{part.dot(x, y)}; })[0];
+}
+template <class System, class Vector = typename System::Vector>
+void add(System& system, double a, const Vector& x, Vector& y) {
+  system.parts([&](const auto& part) { part.add(a, x, y); });
+}
+template <class System, class Vector = typename System::Vector>
+void scale_add(System& system, const Vector& x, double b, Vector& y) {
+  system.parts([&](const auto& part) { part.scale_add(x, b, y); });
+}
+template <class System, class Vector = typename System::Vector>
+void copy(System& system, const Vector& x, Vector& y) {
+  system.parts([&](const auto& part) { part.copy(x, y); });
+}
 
 /// When a solver is content: |r|_P <= max(absolute, relative |r_0|_P), and when it gives up.
 struct Stop {
@@ -217,13 +250,14 @@ class ResidualWatch {
 template <LinearSystem System>
 double true_residual(System& system, const typename System::Vector& b, const typename System::Vector& x,
                      typename System::Vector& r, typename System::Vector& z) {
-  system.copy(b, r);
-  if (system.dot(x, x) != 0.0) {
-    system.apply(x, z);
-    system.add(-1.0, z, r);
-  }
-  system.precondition(r, z);
-  return system.dot(r, z);
+  const bool started = dot(system, x, x) != 0.0;
+  if (started) system.apply(x, z);
+  return system.sums([&](const auto& part) {
+    part.copy(b, r);
+    if (started) part.add(-1.0, z, r);
+    part.precondition(r, z);
+    return std::array{part.dot(r, z)};
+  })[0];
 }
 
 }  // namespace repose

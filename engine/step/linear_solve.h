@@ -41,7 +41,7 @@ class LinearSolve {
   /// Solves A x = b from the x that is given. Each rung may use all of `stop.iterations`; the report has their
   /// sum. What is not solved leaves x no worse than it was.
   SolveReport solve(System& system, const Vector& b, Vector& x, const Stop& stop) {
-    system.copy(x, start_);
+    copy(system, x, start_);
     SolveReport report = first_.solve(system, b, x, stop);
     Stop same = stop;  // the tolerance is relative to the start of the first rung
     same.absolute = std::max(stop.absolute, stop.relative * report.initial_norm);
@@ -55,7 +55,7 @@ class LinearSolve {
     }
     if (stuck(report, stop)) solve_shifted(system, b, x, same, report);
     if (!report.converged() && !(report.final_norm < report.initial_norm)) {
-      system.copy(start_, x);
+      copy(system, start_, x);
       report.final_norm = report.initial_norm;
     }
     return report;
@@ -79,7 +79,7 @@ class LinearSolve {
   void solve_shifted(System& system, const Vector& b, Vector& x, const Stop& stop, SolveReport& report) {
     double shift = shifts_.first;
     for (int k = 0; k < shifts_.count; ++k, shift *= 10.0) {
-      system.copy(start_, x);
+      copy(system, start_, x);
       system.shift(shift);
       follow(report, SolveRung::kShifted, first_.solve(system, b, x, stop));
       report.shift = shift;

@@ -40,12 +40,12 @@ class MinimalResidual {
   }
 
  private:
-  void scale(System& system, double factor, Vector& y) { system.scale_add(zero_, factor, y); }
+  void scale(System& system, double factor, Vector& y) { scale_add(system, zero_, factor, y); }
 
   void start_over(System& system, double norm) {
-    system.copy(zero_, v_old_);
-    system.copy(zero_, d_);
-    system.copy(zero_, d_old_);
+    copy(system, zero_, v_old_);
+    copy(system, zero_, d_);
+    copy(system, zero_, d_old_);
     beta_ = phi_bar_ = norm;
     cosine_ = -1.0;
     sine_ = delta_bar_ = epsilon_ = 0.0;
@@ -56,13 +56,13 @@ class MinimalResidual {
     scale(system, 1.0 / beta_, v_);
     scale(system, 1.0 / beta_, z_);
     system.apply(z_, w_);
-    const double alpha = system.dot(z_, w_);
+    const double alpha = dot(system, z_, w_);
 
     // The last two rotations applied to the new column (beta, alpha) of the tridiagonal matrix.
     const double delta = cosine_ * delta_bar_ + sine_ * alpha;
     const double gamma_bar = sine_ * delta_bar_ - cosine_ * alpha;
-    system.scale_add(z_, -epsilon_, d_old_);
-    system.add(-delta, d_, d_old_);
+    scale_add(system, z_, -epsilon_, d_old_);
+    add(system, -delta, d_, d_old_);
     std::swap(d_, d_old_);
 
     lanczos(system, alpha);
@@ -78,18 +78,20 @@ class MinimalResidual {
     cosine_ = gamma_bar / gamma;
     sine_ = beta_ / gamma;
     scale(system, 1.0 / gamma, d_);
-    system.add(cosine_ * phi_bar_, d_, x);
+    add(system, cosine_ * phi_bar_, d_, x);
     phi_bar_ *= sine_;
     watch.advance(phi_bar_ * phi_bar_);
   }
 
   /// v_new = A z - alpha v - beta v_old and z_new = P v_new, of length beta_new yet.
   void lanczos(System& system, double alpha) {
-    system.scale_add(w_, -beta_, v_old_);
-    system.add(-alpha, v_, v_old_);
+    scale_add(system, w_, -beta_, v_old_);
+    add(system, -alpha, v_, v_old_);
     std::swap(v_, v_old_);
-    system.precondition(v_, z_);
-    const double vv = system.dot(v_, z_);
+    const auto [vv] = system.sums([&](const auto& part) {
+      part.precondition(v_, z_);
+      return std::array{part.dot(v_, z_)};
+    });
     beta_ = vv < 0.0 ? 0.0 : std::sqrt(vv);
   }
 

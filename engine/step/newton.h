@@ -9,9 +9,11 @@
 //   bool has_energy()                                  whether r is the gradient of an energy
 //   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
-//   void linearize(const Vector& v)
+//   void linearize()                                   at the v that was evaluated last
 //   solve(double share, Vector& step)                  step = -A^-1 r(v), |A step + r| <= share |r|
-//   double reach(const Vector& v, const Vector& step)  the longest length along step at which r is defined
+//   double reach(const Vector& step, double length)    the longest length along step at which r is defined, r
+//   being
+//                                                      undefined at `length`, where it was evaluated last
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step
 #pragma once
 
@@ -59,10 +61,9 @@ class Newton {
   Newton(Problem& problem, Vector& v, Vector& step, Vector& trial, const NewtonStop& stop)
       : problem_(problem), v_(v), step_(step), trial_(trial), stop_(stop) {}
 
-  /// Solves r(v) = 0 from the v that is given. Contacts may change during the first half of the iterations, so
-  /// that they cannot keep the method going round for ever.
-  NewtonReport solve() {
-    std::optional<double> norm = problem_.evaluate(v_);
+  /// Solves r(v) = 0 from the v that is given, which was evaluated last, to `norm`. Contacts may change during
+  /// the first half of the iterations, so that they cannot keep the method going round for ever.
+  NewtonReport solve(std::optional<double> norm) {
     if (!norm) return end(NewtonEnd::kUndefined);
     report_.first = report_.last = *norm;
     while (report_.history.push_back(report_.last), report_.last > tolerance()) {
@@ -95,7 +96,7 @@ class Newton {
   double tolerance() const { return stop_.tolerance * problem_.scale(); }
 
   bool direction() {
-    problem_.linearize(v_);
+    problem_.linearize();
     const double eta = std::min(kLoosest, std::sqrt(report_.last / report_.first));
     const auto solved = problem_.solve(std::max(eta, 0.3 * tolerance() / report_.last), step_);
     report_.linear_iterations += solved.iterations;
@@ -115,7 +116,7 @@ class Newton {
         report_.last = *norm;
         return true;
       }
-      length = norm ? 0.5 * length : std::min(0.5 * length, 0.9 * problem_.reach(v_, step_));
+      length = norm ? 0.5 * length : std::min(0.5 * length, 0.9 * problem_.reach(step_, length));
       ++report_.shortened;
     }
     return false;

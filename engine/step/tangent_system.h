@@ -23,7 +23,9 @@ class TangentSystem {
   /// After each order event.
   void follow_topology();
   /// Where the tangents of a chunk begin (kTangentValues numbers a particle, in groups).
-  Real* tangent(std::size_t set, const Chunk<Real>& chunk);
+  Real* tangent(std::size_t set, const Chunk<Real>& chunk) {
+    return tangents_.data() + sweep_.place(set, chunk) * kTangentValues;
+  }
 
   /// After each linearisation: what the preconditioner is made of.
   void prepare();
@@ -31,12 +33,29 @@ class TangentSystem {
   // What Krylov solvers ask for (engine/step/krylov.h).
   Vector vector() const;
   void apply(const Vector& x, Vector& y);
-  void precondition(const Vector& r, Vector& z);
-  double dot(const Vector& x, const Vector& y) const;
-  void add(double a, const Vector& x, Vector& y) const;
-  void scale_add(const Vector& x, double b, Vector& y) const;
-  void copy(const Vector& x, Vector& y) const;
   void shift(double delta) { shift_ = delta; }
+  /// A block of all vectors.
+  class Part {
+   public:
+    Part(const TangentSystem& system, std::size_t block) : system_(system), block_(block) {}
+    void precondition(const Vector& r, Vector& z) const;
+    double dot(const Vector& x, const Vector& y) const;
+    void add(double a, const Vector& x, Vector& y) const;
+    void scale_add(const Vector& x, double b, Vector& y) const;
+    void copy(const Vector& x, Vector& y) const;
+
+   private:
+    const TangentSystem& system_;
+    std::size_t block_;
+  };
+  template <class Body>
+  void parts(Body body) {
+    sweep_.for_each_block([&](std::size_t block) { body(Part(*this, block)); });
+  }
+  template <class Body>
+  auto sums(Body body) {
+    return sweep_.sums_of_blocks([&](std::size_t block) { return body(Part(*this, block)); });
+  }
 
   std::size_t bytes() const { return tangents_.bytes() + diagonal_.bytes() + side_.bytes(); }
 
@@ -45,7 +64,6 @@ class TangentSystem {
   const ContactSet<Real>& contacts_;
   Preconditioner preconditioner_;
   AlignedArray<Real> tangents_;
-  std::vector<std::vector<std::size_t>> begin_;  // per set and owner, in groups
   double shift_ = 0.0;
   Vector diagonal_, side_;  // of the inverses of the blocks: [0, xx, yy, zz] and [0, xy, xz, yz] a node
 };

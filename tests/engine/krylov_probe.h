@@ -43,15 +43,24 @@ class DenseSystem {
     if (fault) fault(products, x, y);
     ++products;
   }
-  void precondition(const Vector& r, Vector& z) { z.values.noalias() = preconditioner_ * r.values; }
-  double dot(const Vector& x, const Vector& y) {
+  using Part = DenseSystem;  // all is one part
+  template <class Body>
+  void parts(Body body) {
+    body(*this);
+  }
+  template <class Body>
+  auto sums(Body body) {
+    return body(*this);
+  }
+  void precondition(const Vector& r, Vector& z) const { z.values.noalias() = preconditioner_ * r.values; }
+  double dot(const Vector& x, const Vector& y) const {
     return x.values.template cast<double>().dot(y.values.template cast<double>());
   }
-  void add(double a, const Vector& x, Vector& y) { y.values += static_cast<Real>(a) * x.values; }
-  void scale_add(const Vector& x, double b, Vector& y) {
+  void add(double a, const Vector& x, Vector& y) const { y.values += static_cast<Real>(a) * x.values; }
+  void scale_add(const Vector& x, double b, Vector& y) const {
     y.values = x.values + static_cast<Real>(b) * y.values;
   }
-  void copy(const Vector& x, Vector& y) { y.values = x.values; }
+  void copy(const Vector& x, Vector& y) const { y.values = x.values; }
   void shift(double amount) { delta = amount; }  // with M = I
 
   /// How much |r|_P may grow with |x|.

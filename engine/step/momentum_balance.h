@@ -1,0 +1,72 @@
+// Repose: the balance of momentum that an implicit step brings about, backward Euler on the velocities of the
+// active nodes (Klar et al. 2016, supplement):
+//   r_i(v) = m_i (v_i - v_i^free) - dt f_i(v) = 0,   f_i = -sum_p V0 S_p g_ip,   S = tau(Z(b(v))) (I + dt grad
+//   v)^-T
+// where v^free has all forces but stress. Nothing is assembled: residual and tangent are passes over the same
+// blocks, in the same colours, as the transfers. The unknown is dv = v - v^n: what is small beside v keeps its
+// digits in single precision.
+#pragma once
+
+#include <optional>
+
+#include "engine/step/tangent_system.h"
+
+namespace repose {
+
+template <class Real>
+class MomentumBalance {
+ public:
+  using Vector = NodeField<Real>;
+
+  MomentumBalance(const ImplicitPlan<Real>& plan, BlockSweep<Real>& sweep, ContactSet<Real>& contacts,
+                  TangentSystem<Real>& system);
+
+  /// After each order event.
+  void follow_topology();
+  /// A step from the nodes of the sweep's state, which hold mass and v^free, and `before_forces`, with v^n.
+  void begin();
+
+  /// |r(dv)| in the norm of the inverse mass, kg^1/2 m/s; nothing where a particle would be turned inside out
+  /// or something is not finite.
+  std::optional<double> evaluate(const Vector& dv);
+  /// r of the dv that was evaluated last, less what contacts bear.
+  const Vector& residual() const { return residual_; }
+  /// The larger of the outer and the inner impulses of the step, in that norm, the least seen in this step. Of
+  /// a stiff body inner ones are large far from the solution: what counts is what acts at it.
+  double scale() const { return scale_; }
+
+  /// Makes the system the tangent at the dv that was evaluated last.
+  void linearize();
+  /// The longest length along step at which no particle is turned inside out, when the dv that was evaluated
+  /// last lies `length` along it.
+  double reach(const Vector& step, double length);
+
+  std::size_t bytes() const { return residual_.bytes() + at_begin_.bytes() + at_trial_.bytes(); }
+
+ private:
+  /// What a sweep keeps of a chunk: the gradient of v (1/s, by rows) and the trial strain.
+  struct Trial {
+    Real* gradient[kAffineComponents];
+    Real* strain[kStrainComponents];
+  };
+  static constexpr std::size_t kTrialValues = kAffineComponents + kStrainComponents;
+  static constexpr double kLeastDeterminant = 0.02;  // for reach(): twice what the kernel refuses
+
+  void gradient_at_begin(std::size_t set, const Chunk<Real>& chunk, Real* (&gradient)[kAffineComponents]);
+  Trial trial_of(std::size_t set, const Chunk<Real>& chunk);
+  void try_strain(std::size_t set, Chunk<Real>& chunk);
+  TangentInput<Real> at_trial(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
+  bool stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
+  std::array<double, 3> finish_residual(std::size_t block, const Real* dv, Real* r);
+
+  const ImplicitPlan<Real>& plan_;
+  bool returns_;  // whether sand yields within the solve
+  BlockSweep<Real>& sweep_;
+  ContactSet<Real>& contacts_;
+  TangentSystem<Real>& system_;
+  Vector residual_;
+  AlignedArray<Real> at_begin_, at_trial_;  // per particle: grad v^n; gradient and strain of Trial
+  double scale_ = 0.0;
+};
+
+}  // namespace repose
