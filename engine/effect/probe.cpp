@@ -129,8 +129,7 @@ struct EnergySum {
       for (std::size_t owner = 0; owner < owners.size(); ++owner) {
         const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
         for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-          const Vec3 x = state.world(
-              block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
+          const Vec3 x = state.world(block, set, p);
           const ParticleEnergy energy = particle_energy(set, p, laws[k], affine_inertia);
           all[0] += energy.kinetic;
           all[1] += energy.affine;

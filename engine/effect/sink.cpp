@@ -77,8 +77,7 @@ void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundI
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     const ParticleSet<Real>& set = state.sets[k];
     for (std::uint32_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-      const Vec3 x = in_plane(state.world(
-          block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])}));
+      const Vec3 x = in_plane(state.world(block, set, p));
       const auto in =
           std::find_if(near.begin(), near.end(), [&](std::uint32_t s) { return sinks_[s].distance(x) < 0.0; });
       if (in != near.end()) found[k].push_back({p, *in});

@@ -44,24 +44,16 @@ std::vector<double> surface_heights(const State<Real>& state, const SurfaceLine&
   // Material of plane strain is a slice of one cell.
   const double width = flat >= 0 || line.width <= 0.0 ? dx : line.width;
   std::vector<Column> filled(count);
-  const auto owners = state.grid.owners();
-  for (const auto& set : state.sets) {
-    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-        const Vec3 x = state.world(
-            block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-        const double s = (x - line.from).dot(along);
-        if (flat < 0 && std::abs((x - line.from).dot(across)) > 0.5 * width) continue;
-        // Column k reaches half a cell to either side of its middle, (k + 1/2) step.
-        const double first = std::ceil((s - 0.5 * dx) / step - 0.5), last = (s + 0.5 * dx) / step - 0.5;
-        for (double k = std::max(0.0, first); k < last && k < static_cast<double>(count); ++k) {
-          filled[static_cast<std::size_t>(k)][static_cast<std::int64_t>(std::floor(x.dot(up) / dx))] +=
-              set.particle_volume;
-        }
-      }
+  for_each_particle(state, [&](const ParticleSet<Real>& set, std::size_t, const Vec3& x) {
+    const double s = (x - line.from).dot(along);
+    if (flat < 0 && std::abs((x - line.from).dot(across)) > 0.5 * width) return;
+    // Column k reaches half a cell to either side of its middle, (k + 1/2) step.
+    const double first = std::ceil((s - 0.5 * dx) / step - 0.5), last = (s + 0.5 * dx) / step - 0.5;
+    for (double k = std::max(0.0, first); k < last && k < static_cast<double>(count); ++k) {
+      filled[static_cast<std::size_t>(k)][static_cast<std::int64_t>(std::floor(x.dot(up) / dx))] +=
+          set.particle_volume;
     }
-  }
+  });
   std::vector<double> heights;
   for (const Column& column : filled) heights.push_back(height_of(column, dx * dx * width, dx));
   return heights;

@@ -45,17 +45,7 @@ void enclose(const Bounds& more, Bounds& box) {
 template <class Real>
 Bounds box_of_material(const Compilation<Real>& compilation, const State<Real>& state) {
   Bounds box;
-  const auto owners = state.grid.owners();
-  for (const auto& set : state.sets) {
-    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-        const Vec3 x = state.world(
-            block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-        enclose({x, x}, box);
-      }
-    }
-  }
+  for_each_particle(state, [&](const auto&, std::size_t, const Vec3& x) { enclose({x, x}, box); });
   for_each_effect(compilation.effects, [&](const auto& effect) {
     if (!effect.on()) return;
     for (const Inlet& inlet : effect.inlets()) enclose(inlet.mouth, box);

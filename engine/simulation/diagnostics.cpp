@@ -92,8 +92,7 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
     for (const auto& set : state.sets) {
       const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-        const Vec3 x = state.world(
-            block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
+        const Vec3 x = state.world(block, set, p);
         add_particle(set, p, material, x, affine_inertia, blocks[owner]);
         if (near) note_depth(solids, x, set.id[p], blocks[owner]);
       }

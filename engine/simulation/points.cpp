@@ -185,8 +185,7 @@ void put_positions(const State<Real>& state, const Source<Real>& source, PointCl
   for (std::size_t owner = 0; set.count > 0 && owner < owners.size(); ++owner) {
     const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
     for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-      const Vec3 x = state.world(
-          block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
+      const Vec3 x = state.world(block, set, p);
       cloud.position[source.row[p]] = {x[0], x[1], x[2]};
     }
   }

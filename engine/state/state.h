@@ -79,6 +79,11 @@ struct State {
     return x;
   }
 
+  /// The same of a particle of a set, whose block it is.
+  Vec3 world(const Index3& block, const ParticleSet<Real>& set, std::size_t p) const {
+    return world(block, {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
+  }
+
   std::size_t particle_bytes() const {
     std::size_t sum = 0;
     for (const auto& set : sets) sum += set.bytes();
@@ -88,5 +93,18 @@ struct State {
     return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + acceleration.bytes() + grid.bytes();
   }
 };
+
+/// Calls visit(set, p, x) for all particles, x its position in metres, in the scene's frame.
+template <class Real, class Visit>
+void for_each_particle(const State<Real>& state, Visit visit) {
+  const auto owners = state.grid.owners();
+  for (const ParticleSet<Real>& set : state.sets) {
+    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
+      const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p)
+        visit(set, p, state.world(block, set, p));
+    }
+  }
+}
 
 }  // namespace repose
