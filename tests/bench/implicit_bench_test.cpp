@@ -86,6 +86,7 @@ TEST(Parting, Lagged_HoldsTheBlocksTogether) {
   arguments.modes = {"lagged", "exact"};
   arguments.steps = {1e-2};
   arguments.until = 0.5;
+  arguments.most_seconds = 600;
   const auto table = study_parting(arguments);
   ASSERT_TRUE(table) << table.error().text();
   const auto share = [&](const char* mode) {

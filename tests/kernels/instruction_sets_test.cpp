@@ -4,6 +4,7 @@
 
 #include "tests/kernels/material_probe.h"
 #include "tests/kernels/node_blocks.h"
+#include "tests/kernels/tangent_samples.h"
 #include "tests/kernels/yield_probe.h"
 
 namespace repose {
@@ -95,6 +96,25 @@ TYPED_TEST(InstructionSets, EveryStencil_Arenas_SameBits) {
     loaded[0].resize(kArenaNodes * kNodeValues);  // what lies behind is never used
     loaded[1].resize(kArenaNodes * kNodeValues);
     EXPECT_TRUE(same_bits(loaded[0], loaded[1])) << transfer.nodes().name;
+  }
+}
+
+TYPED_TEST(InstructionSets, EveryStencilAndTransfer_BlocksOfNodes_SameBits) {
+  using Real = TypeParam;
+  for (const TransferCase& transfer : all_cases()) {
+    for (const std::size_t count : kCounts) {
+      auto particles = random_particles<Real>(count, Order::kScattered, 1060 + count, transfer.stencil);
+      const auto tangent = random_tangents<Real>(count, false);
+      Arena<Real> arenas[2][2];
+      for (int set = 0; set < 2; ++set) {
+        for (Arena<Real>& arena : arenas[set]) arena.assign(kArenaValues, Real(0));
+        const StiffnessInput<Real> in{particles.span(), tangent.data(), Real(1), transfer.lattice<Real>()};
+        transfer.kernel<Real>(kBoth[set]).add_stiffness(in, arenas[set][0].data(), arenas[set][1].data());
+      }
+      const std::string what = transfer.name() + ' ' + std::to_string(count);
+      EXPECT_TRUE(same_bits(arenas[0][0], arenas[1][0])) << what << " diagonal";
+      EXPECT_TRUE(same_bits(arenas[0][1], arenas[1][1])) << what << " side";
+    }
   }
 }
 

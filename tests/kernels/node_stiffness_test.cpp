@@ -2,9 +2,8 @@
 // have on the diagonal: each node moved by itself along each axis, over all stencils and transfers.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
-
+#include "tests/kernels/samples.h"
+#include "tests/kernels/tangent_samples.h"
 #include "tests/kernels/transfer_probe.h"
 
 namespace repose {
@@ -16,24 +15,6 @@ template <class Real>
 class NodeStiffness : public testing::Test {};
 using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(NodeStiffness, Precisions);
-
-/// Tangents of particles at random: U and Q any matrices, A symmetric, or not.
-template <class Real>
-std::vector<Real> random_tangents(bool symmetric) {
-  std::mt19937 engine(11);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<Real> all((kCount + kTangentGroup) * kTangentValues);
-  for (Real& number : all) number = static_cast<Real>(uniform(engine));
-  for (std::size_t p = 0; p < kCount && symmetric; ++p) {
-    const auto a = [&](std::size_t i, std::size_t j) -> Real& {
-      return all[(p / kTangentGroup * kTangentValues + 18 + 3 * i + j) * kTangentGroup + p % kTangentGroup];
-    };
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < i; ++j) a(i, j) = a(j, i);
-    }
-  }
-  return all;
-}
 
 /// What particles do to `node` when it alone moves along `axis`: the force, by components.
 template <class Real>
@@ -68,13 +49,16 @@ std::array<Real, 3> force_on(const TransferCase& transfer, Target target, Partic
 TYPED_TEST(NodeStiffness, Block_IsTheAnswerOfANodeToItself) {
   using Real = TypeParam;
   constexpr std::size_t kDiagonal[3] = {0, 1, 2}, kSide[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  std::vector<std::pair<Target, bool>> all_ways;
+  for (const Target target : supported_targets()) {
+    all_ways.insert(all_ways.end(), {{target, true}, {target, false}});
+  }
   for (TransferCase transfer : all_cases()) {
     for (const int flat : {-1, 2}) {
       transfer.flat_axis = flat;
       auto particles = random_particles<Real>(kCount, Order::kScattered, 401, transfer.stencil);
-      for (const bool symmetric : {true, false}) {
-        const auto tangent = random_tangents<Real>(symmetric);
-        const Target target = best_target();
+      for (const auto& [target, symmetric] : all_ways) {
+        const auto tangent = random_tangents<Real>(kCount, symmetric);
         Arena<Real> diagonal(kArenaValues, Real(0)), side(kArenaValues, Real(0));
         transfer.kernel<Real>(target).add_stiffness(
             {particles.span(), tangent.data(), Real(1), transfer.lattice<Real>()}, diagonal.data(),
@@ -98,24 +82,6 @@ TYPED_TEST(NodeStiffness, Block_IsTheAnswerOfANodeToItself) {
         }
       }
     }
-  }
-}
-
-TYPED_TEST(NodeStiffness, InstructionSets_SameBits) {
-  using Real = TypeParam;
-  if (!target_supported(Target::kAvx512)) GTEST_SKIP() << "AVX-512 is not there to compare with";
-  const auto tangent = random_tangents<Real>(false);
-  for (const TransferCase& transfer : all_cases()) {
-    auto particles = random_particles<Real>(kCount, Order::kScattered, 402, transfer.stencil);
-    Arena<Real> first, second;
-    for (const Target target : {Target::kAvx2, Target::kAvx512}) {
-      Arena<Real> diagonal(kArenaValues, Real(0)), side(kArenaValues, Real(0));
-      transfer.kernel<Real>(target).add_stiffness(
-          {particles.span(), tangent.data(), Real(1), transfer.lattice<Real>()}, diagonal.data(), side.data());
-      diagonal.insert(diagonal.end(), side.begin(), side.end());
-      (target == Target::kAvx2 ? first : second) = diagonal;
-    }
-    ASSERT_EQ(first, second) << transfer.name();
   }
 }
 
