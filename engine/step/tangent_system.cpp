@@ -23,12 +23,7 @@ template <class Real>
 void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
   const Real weight = static_cast<Real>(1.0 + shift_);
   sweep_.for_each_block([&](std::size_t b) {
-    const Real *const nodes = sweep_.state().nodes.block(b), *const from = x.block(b);
-    Real* const to = y.block(b);
-    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      to[at] = Real(0);
-      for (std::size_t c = 1; c < kNodeValues; ++c) to[at + c] = weight * nodes[at] * from[at + c];
-    }
+    sweep_.kernels().vector.times_mass(sweep_.state().nodes.block(b), weight, x.block(b), y.block(b));
   });
   const double square_dt = static_cast<double>(sweep_.dt()) * static_cast<double>(sweep_.dt());
   sweep_.over_particles({.from = &x, .to = &y, .adds = true}, [&](std::size_t set, Chunk<Real>& chunk,
@@ -97,13 +92,13 @@ void TangentSystem<Real>::Part::precondition(const Vector& r, Vector& z) const {
       to[at + 2] = s[at + 1] * x + d[at + 2] * y + s[at + 3] * w;
       to[at + 3] = s[at + 2] * x + s[at + 3] * y + d[at + 3] * w;
     }
+  } else if (const Real* const nodes = system_.sweep_.state().nodes.block(block_);
+             system_.preconditioner_ == Preconditioner::kMass) {
+    kernels().over_mass(nodes, from, to);
   } else {
-    const bool plain = system_.preconditioner_ == Preconditioner::kNone;
-    const Real* const nodes = system_.sweep_.state().nodes.block(block_);
-    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      const Real scale = !(nodes[at] > Real(0)) ? Real(0) : plain ? Real(1) : Real(1) / nodes[at];
-      to[at] = Real(0);
-      for (std::size_t c = 1; c < kNodeValues; ++c) to[at + c] = scale * from[at + c];
+    for (std::size_t at = 0; at < kBlockValues; ++at) {
+      const std::size_t value = at % kNodeValues;
+      to[at] = value != 0 && nodes[at - value] > Real(0) ? from[at] : Real(0);
     }
   }
   system_.contacts_.project(block_, to);
@@ -118,31 +113,17 @@ typename TangentSystem<Real>::Vector TangentSystem<Real>::vector() const {
 
 template <class Real>
 double TangentSystem<Real>::Part::dot(const Vector& x, const Vector& y) const {
-  const Real* const one = x.block(block_);
-  const Real* const other = y.block(block_);
-  double parts[8] = {};  // side by side, for the compiler to vectorise
-  for (std::size_t k = 0; k < kBlockValues; k += 8) {
-    for (std::size_t lane = 0; lane < 8; ++lane) {
-      parts[lane] += static_cast<double>(one[k + lane]) * static_cast<double>(other[k + lane]);
-    }
-  }
-  return ((parts[0] + parts[4]) + (parts[2] + parts[6])) + ((parts[1] + parts[5]) + (parts[3] + parts[7]));
+  return kernels().dot(x.block(block_), y.block(block_));
 }
 
 template <class Real>
 void TangentSystem<Real>::Part::add(double a, const Vector& x, Vector& y) const {
-  const Real scale = static_cast<Real>(a);
-  const Real* const from = x.block(block_);
-  Real* const to = y.block(block_);
-  for (std::size_t k = 0; k < kBlockValues; ++k) to[k] += scale * from[k];
+  kernels().add(static_cast<Real>(a), x.block(block_), y.block(block_));
 }
 
 template <class Real>
 void TangentSystem<Real>::Part::scale_add(const Vector& x, double b, Vector& y) const {
-  const Real scale = static_cast<Real>(b);
-  const Real* const from = x.block(block_);
-  Real* const to = y.block(block_);
-  for (std::size_t k = 0; k < kBlockValues; ++k) to[k] = from[k] + scale * to[k];
+  kernels().scale_add(x.block(block_), static_cast<Real>(b), y.block(block_));
 }
 
 template <class Real>

@@ -45,6 +45,8 @@ class TangentSystem {
     void copy(const Vector& x, Vector& y) const;
 
    private:
+    const VectorKernels<Real>& kernels() const { return system_.sweep_.kernels().vector; }
+
     const TangentSystem& system_;
     std::size_t block_;
   };

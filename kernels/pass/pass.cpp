@@ -19,6 +19,7 @@ KernelTables make_tables(Target target) {
   fill_node_stiffness(target, tables);
   fill_stiffness(target, tables);
   fill_nodes(target, tables);
+  fill_vectors(target, tables);
   return tables;
 }
 

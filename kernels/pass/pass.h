@@ -190,6 +190,18 @@ struct StencilKernels {
   void (*interpolate)(const ParticleSpan<Real>&, int flat_axis, const Real* arena, Real* const velocity[3]);
 };
 
+/// On a block of node vectors, four values a node.
+template <class Real>
+struct VectorKernels {
+  /// x^T y, summed in double.
+  double (*dot)(const Real* x, const Real* y);
+  void (*add)(Real a, const Real* x, Real* y);        ///< y += a x
+  void (*scale_add)(const Real* x, Real b, Real* y);  ///< y = x + b y
+  /// y = weight m x and y = x / m, m the first value of `nodes`; of y it is zero, and all where m is.
+  void (*times_mass)(const Real* nodes, Real weight, const Real* x, Real* y);
+  void (*over_mass)(const Real* nodes, const Real* x, Real* y);
+};
+
 /// Bounds of the velocities of a block's active nodes.
 template <class Real>
 struct VelocityBounds {
@@ -208,6 +220,7 @@ struct Kernels {
   StencilKernels<Real> stencil[kStencils];
   TransferKernels<Real> transfer[kStencils][kTransfers];
   MaterialKernels<Real> material[kMaterials];
+  VectorKernels<Real> vector;
 
   void (*advance)(const ParticleSpan<Real>&, const Real* const velocity[3], const Real* const gradient[9],
                   Real cells_per_velocity, Motion<Real>&);

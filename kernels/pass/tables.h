@@ -61,6 +61,7 @@ void fill_yield(Target target, KernelTables& tables);
 void fill_nodes(Target target, KernelTables& tables);
 void fill_node_stiffness(Target target, KernelTables& tables);
 void fill_stiffness(Target target, KernelTables& tables);
+void fill_vectors(Target target, KernelTables& tables);
 
 }  // namespace repose
 
