@@ -15,25 +15,25 @@ struct Cost {
 
 inline constexpr Cost kCosts[] = {
     // effect_bench: begin
-    {"step", 27.1},
-    {"emitter", 1.1},
+    {"step", 24.5},
+    {"emitter", 1.5},
     {"sink", 0.0},
-    {"gravity", 3.1},
-    {"force_field", 1.4},
-    {"pin", 0.0},
-    {"probe", 0.9},
+    {"gravity", 1.0},
+    {"force_field", 0.6},
+    {"pin", 0.1},
+    {"probe", 0.8},
     {"collider", 0.3},
-    {"sleep", 0.2},
-    {"prestress", 0.8},
-    {"manufactured", 75.6},
+    {"sleep", 0.3},
+    {"prestress", 0.3},
+    {"manufactured", 76.5},
     {"age", 0.0},
-    {"volume_correction", 1.3},
-    {"hardening", 1.6},
-    {"cohesion", 1.0},
-    {"moisture", 5.2},
-    {"variation", 1.0},
-    {"dilatancy", 1.9},
-    {"rate_friction", 1.7},
+    {"volume_correction", 0.4},
+    {"hardening", 1.2},
+    {"cohesion", 0.9},
+    {"moisture", 4.3},
+    {"variation", 0.8},
+    {"dilatancy", 1.1},
+    {"rate_friction", 1.1},
     // effect_bench: end
 };
 
@@ -53,7 +53,7 @@ struct ImplicitCost {
 
 inline constexpr ImplicitCost kImplicitCosts[] = {
     // implicit_costs: begin
-    {1, 340.8}, {3, 693.2}, {10, 2134.6}, {30, 8236.8}, {100, 66348.0}, {300, 168473.2},
+    {1, 124.6}, {3, 267.9}, {10, 943.3}, {30, 4026.0}, {100, 36875.5}, {300, 340802.7},
     // implicit_costs: end
 };
 
