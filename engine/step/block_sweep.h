@@ -72,8 +72,8 @@ class BlockSweep {
   template <class Body>
   void over_particles(const SweptNodes<Real>& nodes, Body body);
 
-  /// Where the numbers of a chunk begin in an array of `values` numbers for each of room() particles: number k
-  /// of its particle p at k * stride(chunk) + p.
+  /// Which particle a chunk begins with in arrays that have numbers for room() of them. Of an array with n
+  /// numbers each, number k of the chunk's particle p is at n * place + k * stride(chunk) + p.
   std::size_t place(std::size_t set, const Chunk<Real>& chunk) const {
     return places_[set][chunk.owner] + (chunk.first - chunk.set.begin[chunk.owner]);
   }

@@ -21,12 +21,10 @@ namespace repose {
 ///   Vector                     owns its storage; moved, never copied
 ///   vector()                   a new one, zero; solvers ask only when they are made
 ///   apply(x, y)                y = A x
-///   parts(body)                body(part) for every part of all vectors; what it does with a part it does
-///   while
-///                              that is in cache
-///   sums(body)                 the same, and adds up the std::array of numbers that body returns, in double
-///   and in
-///                              a fixed order, or the bits depend on threads
+///   parts(body)                body(part) for every part of all vectors: what it does with a part it does
+///                              while that is in cache
+///   sums(body)                 the same, and adds up the std::array of numbers that body returns: in double
+///                              and in a fixed order, or the bits depend on threads
 /// and of a Part:
 ///   precondition(r, z)         z = P r; P couples no parts
 ///   dot(x, y)                  its share of x^T y

@@ -1,7 +1,7 @@
 // Repose: the balance of momentum that an implicit step brings about, backward Euler on the velocities of the
 // active nodes (Klar et al. 2016, supplement):
-//   r_i(v) = m_i (v_i - v_i^free) - dt f_i(v) = 0,   f_i = -sum_p V0 S_p g_ip,   S = tau(Z(b(v))) (I + dt grad
-//   v)^-T
+//   r_i(v) = m_i (v_i - v_i^free) - dt f_i(v) = 0,   f_i = -sum_p V0 S_p g_ip,
+//   S = tau(Z(b(v))) (I + dt grad v)^-T,
 // where v^free has all forces but stress. Nothing is assembled: residual and tangent are passes over the same
 // blocks, in the same colours, as the transfers. The unknown is dv = v - v^n: what is small beside v keeps its
 // digits in single precision.

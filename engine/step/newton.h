@@ -11,9 +11,8 @@
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
 //   void linearize()                                   at the v that was evaluated last
 //   solve(double share, Vector& step)                  step = -A^-1 r(v), |A step + r| <= share |r|
-//   double reach(const Vector& step, double length)    the longest length along step at which r is defined, r
-//   being
-//                                                      undefined at `length`, where it was evaluated last
+//   double reach(const Vector& step, double length)    the longest length along step at which r is defined,
+//                                                      when at `length`, evaluated last, it is not
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step
 #pragma once
 
