@@ -46,7 +46,6 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   linear_ = SolveStatus::kConverged;
   report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve(norm);
   report.linear = linear_;
-  if (report.newton.end == NewtonEnd::kStalled) evaluate(v_);  // contacts know what bears the last trial
   if (solved(report.newton.end)) publish(v_);
   return report;
 }

@@ -60,8 +60,9 @@ class Newton {
   Newton(Problem& problem, Vector& v, Vector& step, Vector& trial, const NewtonStop& stop)
       : problem_(problem), v_(v), step_(step), trial_(trial), stop_(stop) {}
 
-  /// Solves r(v) = 0 from the v that is given, which was evaluated last, to `norm`. Contacts may change during
-  /// the first half of the iterations, so that they cannot keep the method going round for ever.
+  /// Solves r(v) = 0 from the v that is given, which was evaluated last, to `norm`; a v that is handed back as
+  /// solved was evaluated last, too. Contacts may change during the first half of the iterations, so that they
+  /// cannot keep the method going round for ever.
   NewtonReport solve(std::optional<double> norm) {
     if (!norm) return end(NewtonEnd::kUndefined);
     report_.first = report_.last = *norm;
@@ -89,6 +90,7 @@ class Newton {
     const bool found = how == NewtonEnd::kNoDescent || how == NewtonEnd::kUnsolved;
     report_.end = found && report_.last <= kNearly * tolerance() ? NewtonEnd::kStalled : how;
     report_.tolerance = tolerance();
+    if (report_.end == NewtonEnd::kStalled) problem_.evaluate(v_);  // the last was a length that was refused
     return std::move(report_);
   }
 
