@@ -4,8 +4,8 @@
 
 #include "apps/repose/command.h"
 #include "apps/repose/measure.h"
+#include "engine/plan/time_step.h"
 #include "engine/scene/figures.h"
-#include "engine/step/time_step.h"
 
 namespace repose {
 namespace {

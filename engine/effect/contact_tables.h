@@ -11,7 +11,7 @@
 
 #include "engine/effect/contact_log.h"
 #include "engine/effect/moving_solid.h"
-#include "engine/step/step_plan.h"
+#include "engine/plan/step_plan.h"
 
 namespace repose {
 

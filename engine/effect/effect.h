@@ -14,7 +14,7 @@
 #include "engine/base/result.h"
 #include "engine/effect/contact_log.h"
 #include "engine/effect/solid.h"
-#include "engine/step/step_plan.h"
+#include "engine/plan/step_plan.h"
 #include "kernels/material/materials.h"
 
 namespace repose {

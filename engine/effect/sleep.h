@@ -1,5 +1,5 @@
 // Repose: sleep: blocks whose sand has come to rest are left out of the step until something wakes them. The
-// rule and its error stand in engine/step/rest.h; without the key nothing ever sleeps.
+// rule and its error stand in engine/plan/rest.h; without the key nothing ever sleeps.
 #pragma once
 
 #include "engine/effect/effect.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/plan/transfer_stages.h"
 #include "engine/scene/compilation.h"
-#include "engine/step/transfer_stages.h"
 
 namespace repose {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "engine/step/time_step.h"
+#include "engine/plan/time_step.h"
 
 namespace repose {
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "engine/plan/time_step.h"
 #include "engine/simulation/diagnostics.h"
-#include "engine/step/time_step.h"
 
 namespace repose {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "engine/base/parallel.h"
 #include "engine/effect/solid.h"
+#include "engine/plan/step_plan.h"
 #include "engine/scene/scene.h"
 #include "engine/state/state.h"
-#include "engine/step/step_plan.h"
 
 namespace repose {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/step/chunks.h"
+#include "engine/plan/chunks.h"
+#include "engine/plan/transfer_stages.h"
 #include "engine/step/stepper.h"
-#include "engine/step/transfer_stages.h"
 
 namespace repose {
 

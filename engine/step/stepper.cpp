@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step/chunks.h"
-#include "engine/step/transfer_stages.h"
+#include "engine/plan/chunks.h"
+#include "engine/plan/transfer_stages.h"
 
 namespace repose {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/profile.h"
+#include "engine/implicit/implicit_step.h"
+#include "engine/plan/step_plan.h"
+#include "engine/plan/time_step.h"
 #include "engine/state/block_order.h"
 #include "engine/state/state.h"
-#include "engine/step/implicit_step.h"
-#include "engine/step/step_plan.h"
-#include "engine/step/time_step.h"
 
 namespace repose {
 

@@ -1,5 +1,5 @@
 // Repose tests: the length at which a step turns a particle inside out.
-#include "engine/step/inversion.h"
+#include "engine/implicit/inversion.h"
 
 #include <gtest/gtest.h>
 

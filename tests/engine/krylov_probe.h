@@ -10,8 +10,8 @@
 #include <functional>
 #include <random>
 
-#include "engine/step/generalized_conjugate_residual.h"
-#include "engine/step/linear_solve.h"
+#include "engine/solve/generalized_conjugate_residual.h"
+#include "engine/solve/linear_solve.h"
 
 namespace repose {
 

@@ -1,7 +1,7 @@
 // Repose tests: Newton's method on problems of one to three unknowns whose solutions are known: that it
 // converges as it should, keeps to where the residual is defined, takes one-sided constraints, and says how it
 // ended.
-#include "engine/step/newton.h"
+#include "engine/solve/newton.h"
 
 #include <gtest/gtest.h>
 

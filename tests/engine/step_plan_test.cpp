@@ -1,6 +1,6 @@
 // Repose tests: the step as a list: a scene pays for what it names and for nothing else, and a list in which a
 // pass reads what nobody provides is refused.
-#include "engine/step/step_plan.h"
+#include "engine/plan/step_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Repose tests: each limit of the time step binds when it should and under its name, and frames end exactly.
-#include "engine/step/time_step.h"
+#include "engine/plan/time_step.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Repose: the implicit step, from a first guess over Newton's method to the velocities that the nodes keep.
-// What it solves is engine/step/momentum_balance.h.
+// What it solves is engine/implicit/momentum_balance.h.
 #pragma once
 
 #include <optional>
 
 #include "engine/base/profile.h"
-#include "engine/step/linear_solve.h"
-#include "engine/step/momentum_balance.h"
-#include "engine/step/newton.h"
+#include "engine/implicit/momentum_balance.h"
+#include "engine/solve/linear_solve.h"
+#include "engine/solve/newton.h"
 
 namespace repose {
 
@@ -37,7 +37,7 @@ class ImplicitStep {
   void forget() { orders_ = -1; }
   std::size_t bytes() const;
 
-  // What Newton's method asks for (engine/step/newton.h).
+  // What Newton's method asks for (engine/solve/newton.h).
   std::optional<double> evaluate(const Vector& v) { return balance_.evaluate(v); }
   double scale() const { return balance_.scale(); }
   bool has_energy() const;

@@ -1,4 +1,4 @@
-#include "engine/step/contact_set.h"
+#include "engine/implicit/contact_set.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "engine/step/inversion.h"
+#include "engine/implicit/inversion.h"
 
 #include <Eigen/LU>
 #include <array>

@@ -13,7 +13,7 @@
 // (Young and Jea 1980), which spans the same space and has no such breakdown.
 #pragma once
 
-#include "engine/step/krylov.h"
+#include "engine/solve/krylov.h"
 
 namespace repose {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/plan/implicit_plan.h"
+#include "engine/plan/pass.h"
+#include "engine/plan/rest.h"
 #include "engine/state/ownership.h"
-#include "engine/step/implicit_plan.h"
-#include "engine/step/pass.h"
-#include "engine/step/rest.h"
 
 namespace repose {
 

@@ -1,4 +1,4 @@
-#include "engine/step/step_plan.h"
+#include "engine/plan/step_plan.h"
 
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "engine/step/transfer_stages.h"
+#include "engine/plan/transfer_stages.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 //   Stiefel 1955, Relaxationsmethoden bester Strategie; Saad, Iterative methods for sparse linear systems, 6.8.
 #pragma once
 
-#include "engine/step/krylov.h"
+#include "engine/solve/krylov.h"
 
 namespace repose {
 

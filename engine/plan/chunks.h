@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/step/pass.h"
+#include "engine/plan/pass.h"
 
 namespace repose {
 

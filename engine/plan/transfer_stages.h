@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "engine/step/step_plan.h"
+#include "engine/plan/step_plan.h"
 
 namespace repose {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/step/implicit_plan.h"
+#include "engine/plan/implicit_plan.h"
 
 namespace repose {
 

@@ -1,4 +1,4 @@
-#include "engine/step/time_step.h"
+#include "engine/plan/time_step.h"
 
 #include <cmath>
 

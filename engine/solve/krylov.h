@@ -92,7 +92,7 @@ constexpr const char* status_name(SolveStatus status) {
   return kNames[static_cast<int>(status)];
 }
 
-/// How far down the ladder of engine/step/linear_solve.h a solve went. A solver by itself is on the first two.
+/// How far down the ladder of engine/solve/linear_solve.h a solve went. A solver by itself is on the first two.
 enum class SolveRung { kFirst, kRestarted, kMinimalResidual, kShifted };
 constexpr const char* rung_name(SolveRung rung) {
   constexpr const char* kNames[] = {"first", "restarted", "minimal residual", "shifted"};

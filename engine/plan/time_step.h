@@ -13,8 +13,8 @@
 
 #include <algorithm>
 
+#include "engine/plan/step_plan.h"
 #include "engine/state/state.h"
-#include "engine/step/step_plan.h"
 
 namespace repose {
 

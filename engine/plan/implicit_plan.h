@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/step/pass.h"
+#include "engine/plan/pass.h"
 
 namespace repose {
 

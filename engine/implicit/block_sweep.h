@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
-#include "engine/step/chunks.h"
-#include "engine/step/step_plan.h"
+#include "engine/plan/chunks.h"
+#include "engine/plan/step_plan.h"
 
 namespace repose {
 

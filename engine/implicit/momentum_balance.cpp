@@ -1,11 +1,11 @@
-#include "engine/step/momentum_balance.h"
+#include "engine/implicit/momentum_balance.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
-#include "engine/step/inversion.h"
+#include "engine/implicit/inversion.h"
 
 namespace repose {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <optional>
 
-#include "engine/step/conjugate_residual.h"
-#include "engine/step/generalized_conjugate_residual.h"
-#include "engine/step/minimal_residual.h"
+#include "engine/solve/conjugate_residual.h"
+#include "engine/solve/generalized_conjugate_residual.h"
+#include "engine/solve/minimal_residual.h"
 
 namespace repose {
 

@@ -1,4 +1,4 @@
-#include "engine/step/tangent_system.h"
+#include "engine/implicit/tangent_system.h"
 
 #include <Eigen/Eigenvalues>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "engine/step/rest.h"
+#include "engine/plan/rest.h"
 
 #include <algorithm>
 #include <cmath>

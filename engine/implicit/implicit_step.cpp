@@ -1,4 +1,4 @@
-#include "engine/step/implicit_step.h"
+#include "engine/implicit/implicit_step.h"
 
 #include <algorithm>
 #include <cstring>

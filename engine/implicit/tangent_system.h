@@ -6,8 +6,8 @@
 // empty.
 #pragma once
 
-#include "engine/step/block_sweep.h"
-#include "engine/step/contact_set.h"
+#include "engine/implicit/block_sweep.h"
+#include "engine/implicit/contact_set.h"
 
 namespace repose {
 
@@ -30,7 +30,7 @@ class TangentSystem {
   /// After each linearisation: what the preconditioner is made of.
   void prepare();
 
-  // What Krylov solvers ask for (engine/step/krylov.h).
+  // What Krylov solvers ask for (engine/solve/krylov.h).
   Vector vector() const;
   void apply(const Vector& x, Vector& y);
   void shift(double delta) { shift_ = delta; }

@@ -5,7 +5,7 @@
 //   Paige and Saunders 1975, Solution of sparse indefinite systems of linear equations; letters are theirs.
 #pragma once
 
-#include "engine/step/krylov.h"
+#include "engine/solve/krylov.h"
 
 namespace repose {
 

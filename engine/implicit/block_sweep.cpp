@@ -1,6 +1,6 @@
-#include "engine/step/block_sweep.h"
+#include "engine/implicit/block_sweep.h"
 
-#include "engine/step/transfer_stages.h"
+#include "engine/plan/transfer_stages.h"
 
 namespace repose {
 

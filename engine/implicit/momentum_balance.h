@@ -9,7 +9,7 @@
 
 #include <optional>
 
-#include "engine/step/tangent_system.h"
+#include "engine/implicit/tangent_system.h"
 
 namespace repose {
 
