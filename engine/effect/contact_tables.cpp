@@ -330,6 +330,7 @@ void ContactTables<Real>::list(const NodeBlock<Real>& block, std::vector<Hold<Re
       std::copy_n(at.normal, 3, hold.normal);
       std::copy_n(wall, 3, hold.velocity);
       hold.bound = dot(at.normal, wall);
+      if (contact != Contact::kSticky) hold.friction = static_cast<Real>(solids_[touch.solid].friction);
       if (against) hold.bound += (std::min(at.distance, Real(0)) - at.distance) / block.dt;
       holds.push_back(hold);
     }

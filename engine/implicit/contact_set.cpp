@@ -1,13 +1,22 @@
 #include "engine/implicit/contact_set.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace repose {
 namespace {
 
+/// A node's part of a block's vector.
 template <class Real>
-Real dot3(const Real* a, const Real* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+auto at_node(Real* vector, int node) {
+  using Plain = std::remove_const_t<Real>;
+  using Vector3 = Eigen::Matrix<Plain, 3, 1>;
+  return Eigen::Map<std::conditional_t<std::is_const_v<Real>, const Vector3, Vector3>>(vector +
+                                                                                       node * kNodeValues + 1);
+}
+template <class Real>
+auto normal_of(const Hold<Real>& hold) {
+  return Eigen::Map<const Eigen::Matrix<Real, 3, 1>>(hold.normal);
 }
 
 }  // namespace
@@ -40,70 +49,133 @@ void ContactSet<Real>::set_block(std::size_t block, const std::vector<Hold<Real>
 template <class Real>
 void ContactSet<Real>::span(Node& node) {
   node.rank = 0;
-  const auto add = [&node](const Real* normal, Real bound) {
-    std::array<Real, 3> rest{normal[0], normal[1], normal[2]};
+  const auto add = [&node](const Vector3& normal, Real bound) {
+    Vector3 rest = normal;
     Real left = bound;
     for (int k = 0; k < node.rank; ++k) {
-      const auto& axis = node.axis[static_cast<std::size_t>(k)];
-      const Real along = dot3(axis.data(), normal);
-      for (std::size_t c = 0; c < 3; ++c) rest[c] -= along * axis[c];
-      left -= along * node.value[static_cast<std::size_t>(k)];
+      const Real along = node.axis[k].dot(normal);
+      rest -= along * node.axis[k];
+      left -= along * node.value[k];
     }
-    const Real length = std::sqrt(dot3(rest.data(), rest.data()));
+    const Real length = rest.norm();
     if (node.rank == 3 || length < Real(1e-3)) return;  // what is held already
-    for (Real& c : rest) c /= length;
-    node.axis[static_cast<std::size_t>(node.rank)] = rest;
-    node.value[static_cast<std::size_t>(node.rank)] = left / length;
+    node.axis[node.rank] = rest / length;
+    node.value[node.rank] = left / length;
     ++node.rank;
   };
   for (std::size_t k = 0; k < node.holds.size(); ++k) {
     const Hold<Real>& hold = node.holds[k];
     if (node.active[k] == 0) continue;
     if (hold.kind != Hold<Real>::Kind::kAll) {
-      add(hold.normal, hold.bound);
+      add(normal_of(hold), hold.bound);
       continue;
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      Real unit[3] = {};
-      unit[axis] = Real(1);
-      add(unit, hold.velocity[axis]);
-    }
+    for (int axis = 0; axis < 3; ++axis) add(Vector3::Unit(axis), hold.velocity[axis]);
   }
 }
 
 template <class Real>
 void ContactSet<Real>::obey(std::size_t block, Real* v) const {
   for (const Node& node : nodes_[block]) {
-    Real* const at = v + node.index * kNodeValues + 1;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(node.rank); ++k) {
-      const Real missing = node.value[k] - dot3(node.axis[k].data(), at);
-      for (std::size_t c = 0; c < 3; ++c) at[c] += missing * node.axis[k][c];
-    }
+    auto at = at_node(v, node.index);
+    for (int k = 0; k < node.rank; ++k) at += (node.value[k] - node.axis[k].dot(at)) * node.axis[k];
   }
+}
+
+/// What of x lies along no direction that is held.
+template <class Real>
+typename ContactSet<Real>::Vector3 ContactSet<Real>::along_walls(const Node& node, Vector3 x) {
+  if (node.rank == 3) return Vector3::Zero();
+  for (int k = 0; k < node.rank; ++k) x -= node.axis[k].dot(x) * node.axis[k];
+  return x;
 }
 
 template <class Real>
 void ContactSet<Real>::project(std::size_t block, Real* x) const {
   for (const Node& node : nodes_[block]) {
-    Real* const at = x + node.index * kNodeValues + 1;
-    if (node.rank == 3) {
-      at[0] = at[1] = at[2] = Real(0);
-      continue;
-    }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(node.rank); ++k) {
-      const Real along = dot3(node.axis[k].data(), at);
-      for (std::size_t c = 0; c < 3; ++c) at[c] -= along * node.axis[k][c];
-    }
+    auto at = at_node(x, node.index);
+    at = along_walls(node, at);
+  }
+}
+
+/// The first active contact with friction, or null: with several, the one whose velocity counts.
+template <class Real>
+const Hold<Real>* ContactSet<Real>::rough(const Node& node) {
+  if (node.rank == 3) return nullptr;
+  for (std::size_t k = 0; k < node.holds.size(); ++k) {
+    if (node.active[k] != 0 && node.holds[k].friction > Real(0)) return &node.holds[k];
+  }
+  return nullptr;
+}
+
+/// The velocity of a node along its walls, against one of them.
+template <class Real>
+typename ContactSet<Real>::Vector3 ContactSet<Real>::slip(const Node& node, const Hold<Real>& hold,
+                                                          const Real* v) {
+  return along_walls(node, at_node(v, node.index) - Eigen::Map<const Vector3>(hold.velocity));
+}
+
+/// mu J_n, over all active contacts of a node.
+template <class Real>
+Real ContactSet<Real>::friction_bound(const Node& node) {
+  Real sum = Real(0);
+  for (std::size_t k = 0; k < node.holds.size(); ++k) {
+    const Hold<Real>& hold = node.holds[k];
+    if (node.active[k] == 0) continue;
+    const Real pushed = normal_of(hold).dot(node.reaction);
+    sum += hold.friction *
+           (hold.kind == Hold<Real>::Kind::kAgainst ? std::max(pushed, Real(0)) : std::abs(pushed));
+  }
+  return sum;
+}
+
+template <class Real>
+void ContactSet<Real>::bear(std::size_t block, const Real* nodes, const Real* v, Real* r, Real* left) {
+  for (Node& node : nodes_[block]) {
+    auto at = at_node(r, node.index), counts = at_node(left, node.index);
+    const Vector3 asked = along_walls(node, at);
+    node.reaction = at - asked;
+    node.evaluated = {};
+    at = counts = asked;
+    const Hold<Real>* const wall = rough(node);
+    if (wall == nullptr) continue;
+    const Real mass = nodes[node.index * kNodeValues], bound = friction_bound(node);
+    if (!(mass > Real(0)) || !(bound > Real(0))) continue;
+    const Vector3 u = slip(node, *wall, v);
+    node.evaluated = Friction<Real>(mass, bound, u, asked);
+    node.reaction += node.evaluated.impulse;
+    at += node.evaluated.stiffness * u;
+    counts -= node.evaluated.impulse;
   }
 }
 
 template <class Real>
-void ContactSet<Real>::remember(std::size_t block, const Real* r) {
-  for (Node& node : nodes_[block]) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      node.reaction[c] = r[static_cast<std::size_t>(node.index * kNodeValues) + 1 + c];
-    }
+void ContactSet<Real>::linearize(std::size_t block) {
+  for (Node& node : nodes_[block]) node.tangent = node.evaluated;
+}
+
+template <class Real>
+void ContactSet<Real>::add_friction(std::size_t block, const Real* x, Real* y) const {
+  for (const Node& node : nodes_[block]) {
+    if (node.tangent.stiffness > Real(0)) at_node(y, node.index) += node.tangent.resist(at_node(x, node.index));
   }
+}
+
+template <class Real>
+void ContactSet<Real>::soften(std::size_t block, const Real* nodes, Real* z) const {
+  for (const Node& node : nodes_[block]) {
+    if (!(node.tangent.stiffness > Real(0))) continue;
+    auto at = at_node(z, node.index);
+    at = node.tangent.soften(nodes[node.index * kNodeValues], at);
+  }
+}
+
+template <class Real>
+Mat3 ContactSet<Real>::friction(const Node& node) {
+  Eigen::Matrix<Real, 3, 3> d;
+  for (int axis = 0; axis < 3; ++axis)
+    d.col(axis) = node.tangent.resist(along_walls(node, Vector3::Unit(axis)));
+  return d.template cast<double>();
 }
 
 template <class Real>
@@ -124,7 +196,7 @@ int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
     for (std::size_t k = 0; k < node.holds.size(); ++k) {
       const Hold<Real>& hold = node.holds[k];
       if (node.active[k] != 0) continue;
-      const Real along = dot3(hold.normal, v + node.index * kNodeValues + 1);
+      const Real along = normal_of(hold).dot(at_node(v, node.index));
       if (along < hold.bound - Real(1e-6) * std::abs(hold.bound)) {
         node.active[k] = 1;
         ++changed;
@@ -143,7 +215,7 @@ int ContactSet<Real>::let_go(std::size_t block) {
     int changed = 0;
     for (std::size_t k = 0; k < node.holds.size(); ++k) {
       if (node.active[k] == 0 || node.holds[k].kind != Hold<Real>::Kind::kAgainst) continue;
-      if (dot3(node.holds[k].normal, node.reaction.data()) < Real(0)) {
+      if (normal_of(node.holds[k]).dot(node.reaction) < Real(0)) {
         node.active[k] = 0;
         ++changed;
       }
@@ -152,6 +224,30 @@ int ContactSet<Real>::let_go(std::size_t block) {
     changes += changed;
   }
   return changes;
+}
+
+template <class Real>
+int ContactSet<Real>::stop_held(std::size_t block, const Real* nodes, const Real* r, Real* v) const {
+  int stopped = 0;
+  for (const Node& node : nodes_[block]) {
+    if (!node.evaluated.slips) continue;
+    const Vector3 u = slip(node, *rough(node), v), asked = at_node(r, node.index) + node.evaluated.impulse;
+    if ((nodes[node.index * kNodeValues] * u - asked).norm() > friction_bound(node)) continue;
+    at_node(v, node.index) -= u;
+    ++stopped;
+  }
+  return stopped;
+}
+
+template <class Real>
+void ContactSet<Real>::stop_turning(std::size_t block, const Real* from, Real* to) const {
+  for (const Node& node : nodes_[block]) {
+    if (!node.tangent.slips) continue;
+    const Hold<Real>* const wall = rough(node);
+    if (wall == nullptr) continue;
+    const Vector3 u = slip(node, *wall, to);
+    if (!(u.dot(slip(node, *wall, from)) > Real(0))) at_node(to, node.index) -= u;
+  }
 }
 
 template <class Real>

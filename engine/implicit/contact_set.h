@@ -1,35 +1,56 @@
 // Repose: which nodes are held during an implicit step, and along which directions. Contacts that only push are
 // an active set: one is taken up when its node would pass its bound and let go when it would have to pull (the
-// conditions of Klar et al. 2016, section 8: G >= 0, reaction >= 0, and one of the two zero).
+// conditions of Klar et al. 2016, section 8: G >= 0, reaction >= 0, and one of the two zero). Nodes that are
+// held may rub (engine/implicit/coulomb.h).
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "engine/implicit/coulomb.h"
 #include "engine/plan/implicit_plan.h"
 
 namespace repose {
 
+/// Vectors of a block have four numbers a node, [0, x, y, z]. Calls that name a block may come from one thread
+/// per block.
 template <class Real>
 class ContactSet {
  public:
+  using Vector3 = Eigen::Matrix<Real, 3, 1>;
+
   /// Forgets all; `blocks` is the number of blocks of nodes.
   void clear(std::size_t blocks);
-  /// Adds what may hold the nodes of a block; blocks in any order, from one thread per block. `mass` are its
-  /// nodes.
+  /// Adds what may hold the nodes of a block.
   void set_block(std::size_t block, const std::vector<Hold<Real>>& holds);
 
-  /// Velocities of a block's nodes, [0, v] each: brought to what their holds prescribe.
+  /// Velocities of a block's nodes: brought to what their holds prescribe.
   void obey(std::size_t block, Real* v) const;
-  /// Takes from a block's vectors, [0, x] each, all that lies along directions that are held.
+  /// Takes from a vector all that lies along directions that are held.
   void project(std::size_t block, Real* x) const;
-  /// Keeps the residual of held nodes, before it is projected: the impulse that holds them.
-  void remember(std::size_t block, const Real* r);
-  /// Calls visit(node, impulse) for the nodes that are held, with what was remembered.
+
+  /// Of the residual r without contacts, at the velocities v: takes what holds bear, adds friction, and keeps
+  /// the impulse J of both. In `left` it puts what of r counts, which is nothing where a node sticks as long as
+  /// friction can bear what it is asked to. `nodes` have the masses.
+  void bear(std::size_t block, const Real* nodes, const Real* v, Real* r, Real* left);
+  /// Calls visit(node, J) for the nodes that are held.
   template <class Visit>
   void for_each_reaction(std::size_t block, Visit visit) const {
     for (const Node& node : nodes_[block]) {
-      if (node.rank > 0) visit(node.index, node.reaction.data());
+      if (node.rank > 0) visit(node.index, node.reaction);
+    }
+  }
+
+  /// Makes the tangent D of friction that at the velocities which were evaluated last.
+  void linearize(std::size_t block);
+  /// y += D x, of an x that is zero along what is held.
+  void add_friction(std::size_t block, const Real* x, Real* y) const;
+  /// z = (m + D)^-1 m z
+  void soften(std::size_t block, const Real* nodes, Real* z) const;
+  /// Calls visit(node, D) for the nodes that rub.
+  template <class Visit>
+  void for_each_friction(std::size_t block, Visit visit) const {
+    for (const Node& node : nodes_[block]) {
+      if (node.tangent.stiffness > Real(0)) visit(node.index, friction(node));
     }
   }
 
@@ -37,8 +58,14 @@ class ContactSet {
   void release(std::size_t block);
   /// Takes up contacts that v passes. Returns how many changed.
   int take_up(std::size_t block, const Real* v);
-  /// Lets contacts go whose remembered reaction pulls.
+  /// Lets contacts go whose J pulls.
   int let_go(std::size_t block);
+  /// Stops nodes that slip in v, evaluated last with the residual r, where friction would stop each by itself.
+  /// Returns how many.
+  int stop_held(std::size_t block, const Real* nodes, const Real* r, Real* v) const;
+  /// Stops nodes that slip in `from` and have turned round in `to`: whether they slip back, only the next
+  /// iteration can tell.
+  void stop_turning(std::size_t block, const Real* from, Real* to) const;
 
   bool any(std::size_t block) const { return !nodes_[block].empty(); }
   /// Directions that are held, over all nodes.
@@ -47,14 +74,20 @@ class ContactSet {
  private:
   struct Node {
     int index = 0;
-    int rank = 0;                               // directions held
-    std::array<std::array<Real, 3>, 3> axis{};  // orthonormal
-    std::array<Real, 3> value{};                // v . axis
-    std::array<Real, 3> reaction{};
+    int rank = 0;      // directions held
+    Vector3 axis[3];   // orthonormal
+    Real value[3]{};   // v . axis
+    Vector3 reaction;  // J
     std::vector<Hold<Real>> holds;
     std::vector<std::uint8_t> active;  // per hold
+    Friction<Real> evaluated, tangent;
   };
   static void span(Node& node);
+  static Vector3 along_walls(const Node& node, Vector3 x);
+  static const Hold<Real>* rough(const Node& node);
+  static Vector3 slip(const Node& node, const Hold<Real>& hold, const Real* v);
+  static Real friction_bound(const Node& node);
+  static Mat3 friction(const Node& node);
 
   std::vector<std::vector<Node>> nodes_;  // per block
 };

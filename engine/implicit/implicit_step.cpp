@@ -72,8 +72,6 @@ void ImplicitStep<Real>::carry_acceleration() {
 template <class Real>
 std::optional<double> ImplicitStep<Real>::start() {
   if (!accelerated_) return start_at(v_, false);
-  // What is left of a guess as good as this is no more than what Newton's method makes of the other one.
-  constexpr double kGood = 0.3;  // of the impulses
   const std::optional<double> by_rate = start_at(v_, true);
   if (by_rate && *by_rate <= kGood * scale()) return by_rate;
   const std::optional<double> at_rest = start_at(trial_, false);
@@ -82,24 +80,62 @@ std::optional<double> ImplicitStep<Real>::start() {
   return at_rest;
 }
 
-/// |r| at the acceleration of the last step, or at none, as far as contacts let it be.
+/// |r| at the acceleration of the last step, or at none, with contacts as the forces there would have them
+/// where that is better. Each that is found here saves an iteration of Newton's method.
 template <class Real>
 std::optional<double> ImplicitStep<Real>::start_at(Vector& v, bool by_rate) {
+  place(v, by_rate);
+  const std::optional<double> norm = evaluate(v);
+  if (!norm || *norm <= kGood * scale() || !foresee_contacts(v)) return norm;
+  const std::optional<double> foreseen = evaluate(v);
+  if (foreseen && *foreseen <= *norm) return foreseen;
+  place(v, by_rate);
+  return evaluate(v);
+}
+
+/// v at the acceleration of the last step, or at none, as far as contacts let it be: those that v would pass,
+/// or v^free.
+template <class Real>
+void ImplicitStep<Real>::place(Vector& v, bool by_rate) {
   const Real dt = by_rate ? sweep_.dt() : Real(0);
   sweep_.for_each_block([&](std::size_t b) {
     const Real* const from = sweep_.state().acceleration.field.block(b);
-    const Real* const nodes = sweep_.state().nodes.block(b);
+    const Real *const nodes = sweep_.state().nodes.block(b), *const begin =
+                                                                 sweep_.state().before_forces.block(b);
     Real* const to = v.block(b);
+    Real free[kBlockValues];
     for (std::size_t at = 0; at < kBlockValues; ++at) {
       const bool empty =
           !(nodes[at - at % kNodeValues] > Real(0));  // it may have had mass when `from` was kept
       to[at] = empty ? Real(0) : dt * from[at];
+      free[at] = nodes[at] - begin[at];
     }
     contacts_.release(b);
     contacts_.take_up(b, to);
+    contacts_.take_up(b, free);
     contacts_.obey(b, to);
   });
-  return evaluate(v);
+}
+
+/// Takes up contacts that an explicit step with the forces at v would pass, and stops what friction would stop
+/// in one. Returns whether there are any.
+template <class Real>
+bool ImplicitStep<Real>::foresee_contacts(Vector& v) {
+  const auto [found] = sweep_.sums_of_blocks([&](std::size_t b) {
+    if (!contacts_.any(b)) return std::array{0.0};
+    const Real *const r = balance_.residual().block(b), *const nodes = sweep_.state().nodes.block(b);
+    Real* const to = v.block(b);
+    Real next[kBlockValues];
+    for (std::size_t at = 0; at < kBlockValues; ++at) {
+      const Real mass = nodes[at - at % kNodeValues];
+      next[at] = mass > Real(0) ? to[at] - r[at] / mass : Real(0);
+    }
+    const int stopped = contacts_.stop_held(b, nodes, r, to);
+    const int taken = contacts_.take_up(b, next);
+    contacts_.obey(b, to);
+    return std::array{static_cast<double>(stopped + taken)};
+  });
+  return found > 0.0;
 }
 
 template <class Real>
@@ -112,7 +148,11 @@ void ImplicitStep<Real>::collect_holds() {
     std::vector<Hold<Real>> holds;
     for (const auto& pass : plan_.contacts) pass.run(block, holds);
     const Real* const begin = state.before_forces.block(b);
-    for (Hold<Real>& hold : holds) hold.relative_to(begin + hold.node * kNodeValues + 1);
+    for (Hold<Real>& hold : holds) {
+      hold.relative_to(begin + hold.node * kNodeValues + 1);
+      // v-bar, by which particles then move, is known only where friction follows the solve.
+      if (plan_.advection == Advection::kBeforeFriction) hold.friction = Real(0);
+    }
     contacts_.set_block(b, holds);
   });
 }
@@ -153,11 +193,10 @@ bool ImplicitStep<Real>::has_energy() const {
 
 template <class Real>
 void ImplicitStep<Real>::take(const Vector& v, double length, const Vector& step, Vector& to) {
-  const Real scale = static_cast<Real>(length);
   sweep_.for_each_block([&](std::size_t b) {
-    const Real *const from = v.block(b), *const along = step.block(b);
-    Real* const out = to.block(b);
-    for (std::size_t k = 0; k < kBlockValues; ++k) out[k] = from[k] + scale * along[k];
+    std::copy_n(v.block(b), kBlockValues, to.block(b));
+    sweep_.kernels().vector.add(static_cast<Real>(length), step.block(b), to.block(b));
+    contacts_.stop_turning(b, v.block(b), to.block(b));
   });
 }
 
@@ -187,7 +226,7 @@ void ImplicitStep<Real>::publish(const Vector& v) {
         if (!empty) nodes[at + c] = begin[at + c] + from[at + c];
       }
     }
-    contacts_.for_each_reaction(b, [&](int node, const Real* reaction) {
+    contacts_.for_each_reaction(b, [&](int node, const auto& reaction) {
       Real* const at = nodes + node * kNodeValues;
       if (!(at[0] > Real(0))) return;
       for (int c = 0; c < 3; ++c) at[1 + c] -= reaction[c] / at[0];

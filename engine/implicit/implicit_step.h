@@ -29,8 +29,8 @@ class ImplicitStep {
   ImplicitStep& operator=(const ImplicitStep&) = delete;
 
   /// Solves for a step of dt from the state's nodes, which hold mass and v^free, and `before_forces`, with v^n.
-  /// On return nodes hold what the passes that hold nodes are to start from: v, and where a node is held v^free
-  /// + dt f / m, so that friction sees the impulse of the contact (Klar et al. 2016, section 8.1).
+  /// On return nodes hold what the passes that hold nodes are to start from: v less the impulse of their
+  /// contacts, which those passes then bring about themselves, and record.
   ImplicitReport solve(State<Real>& state, Real dt);
 
   /// After a state was loaded: what was known of its topology may be of another.
@@ -54,11 +54,17 @@ class ImplicitStep {
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
+  /// What is left of a guess as good as this, of the impulses, is no more than what Newton's method makes of
+  /// any other.
+  static constexpr double kGood = 0.3;
+
   void follow_topology();
   void collect_holds();
   void carry_acceleration();
   std::optional<double> start();
   std::optional<double> start_at(Vector& v, bool by_rate);
+  void place(Vector& v, bool by_rate);
+  bool foresee_contacts(Vector& v);
   void publish(const Vector& v);
 
   const StepPlan<Real>& plan_;

@@ -153,8 +153,8 @@ std::optional<double> MomentumBalance<Real>::evaluate(const Vector& dv) {
   return std::sqrt(sum);
 }
 
-/// dt f -> r = m (dv - (v^free - v^n)) - dt f, less what contacts bear. Returns the squares of r and of the
-/// outer and inner impulses, in the norm of the inverse mass.
+/// dt f -> r = m (dv - (v^free - v^n)) - dt f, less what contacts bear. Returns the squares of what of r counts
+/// and of the outer and inner impulses, in the norm of the inverse mass.
 template <class Real>
 std::array<double, 3> MomentumBalance<Real>::finish_residual(std::size_t block, const Real* dv, Real* r) {
   const Real* const nodes = sweep_.state().nodes.block(block);
@@ -169,13 +169,15 @@ std::array<double, 3> MomentumBalance<Real>::finish_residual(std::size_t block, 
       r[at + c] = mass > Real(0) ? mass * (dv[at + c] - outer[at + c]) - r[at + c] : Real(0);
     }
   }
-  contacts_.remember(block, r);
-  for (Real* const vector : {r, outer, inner}) contacts_.project(block, vector);
+  Real left[kBlockValues];
+  std::copy_n(r, kBlockValues, left);
+  contacts_.bear(block, nodes, dv, r, left);
+  for (Real* const vector : {outer, inner}) contacts_.project(block, vector);
   std::array<double, 3> squares{};
   for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
     if (!(nodes[at] > Real(0))) continue;
     const auto mass = static_cast<double>(nodes[at]);
-    squares[0] += square(r + at) / mass;
+    squares[0] += square(left + at) / mass;
     squares[1] += square(outer + at) * mass;
     squares[2] += square(inner + at) / mass;
   }
@@ -188,6 +190,7 @@ void MomentumBalance<Real>::linearize() {
   sweep_.over_particles({}, [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
     plan_.sets[set].kernels.linearize[mode](at_trial(set, chunk, own));
   });
+  sweep_.for_each_block([&](std::size_t b) { contacts_.linearize(b); });
   system_.prepare();
 }
 

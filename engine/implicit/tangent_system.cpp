@@ -24,6 +24,7 @@ void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
   const Real weight = static_cast<Real>(1.0 + shift_);
   sweep_.for_each_block([&](std::size_t b) {
     sweep_.kernels().vector.times_mass(sweep_.state().nodes.block(b), weight, x.block(b), y.block(b));
+    contacts_.add_friction(b, x.block(b), y.block(b));
   });
   const double square_dt = static_cast<double>(sweep_.dt()) * static_cast<double>(sweep_.dt());
   sweep_.over_particles({.from = &x, .to = &y, .adds = true}, [&](std::size_t set, Chunk<Real>& chunk,
@@ -72,6 +73,14 @@ void TangentSystem<Real>::prepare() {
     sweep_.add_stiffness(chunk, own, tangent(set, chunk), square_dt * chunk.set.particle_volume);
   });
   sweep_.for_each_block([&](std::size_t b) {
+    contacts_.for_each_friction(b, [&](int node, const Mat3& friction) {
+      const std::size_t at = static_cast<std::size_t>(node) * kNodeValues + 1;
+      Real *const d = diagonal_.block(b) + at, *const s = side_.block(b) + at;
+      for (int c = 0; c < 3; ++c) d[c] += static_cast<Real>(friction(c, c));
+      s[0] += static_cast<Real>(friction(1, 0));
+      s[1] += static_cast<Real>(friction(2, 0));
+      s[2] += static_cast<Real>(friction(2, 1));
+    });
     const Real* const nodes = sweep_.state().nodes.block(b);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
       if (nodes[at] > Real(0)) invert_block(nodes[at], diagonal_.block(b) + at + 1, side_.block(b) + at + 1);
@@ -81,9 +90,13 @@ void TangentSystem<Real>::prepare() {
 
 template <class Real>
 void TangentSystem<Real>::Part::precondition(const Vector& r, Vector& z) const {
-  const Real* const from = r.block(block_);
+  const Real* from = r.block(block_);
   Real* const to = z.block(block_);
   if (system_.preconditioner_ == Preconditioner::kBlocks) {
+    Real free[kBlockValues];  // a node's block would make what is held part of what is not
+    std::copy_n(from, kBlockValues, free);
+    system_.contacts_.project(block_, free);
+    from = free;
     const Real *const d = system_.diagonal_.block(block_), *const s = system_.side_.block(block_);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
       const Real x = from[at + 1], y = from[at + 2], w = from[at + 3];
@@ -95,6 +108,7 @@ void TangentSystem<Real>::Part::precondition(const Vector& r, Vector& z) const {
   } else if (const Real* const nodes = system_.sweep_.state().nodes.block(block_);
              system_.preconditioner_ == Preconditioner::kMass) {
     kernels().over_mass(nodes, from, to);
+    system_.contacts_.soften(block_, nodes, to);
   } else {
     for (std::size_t at = 0; at < kBlockValues; ++at) {
       const std::size_t value = at % kNodeValues;

@@ -57,6 +57,7 @@ struct Hold {
   Real normal[3] = {};
   Real bound = 0;         ///< m/s
   Real velocity[3] = {};  ///< m/s
+  Real friction = 0;      ///< Coulomb's coefficient; none of kAll
 
   /// The same of the difference to a velocity.
   void relative_to(const Real* v) {

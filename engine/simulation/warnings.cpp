@@ -105,17 +105,6 @@ Fastest<Real> find_fastest(const State<Real>& state) {
   return fastest;
 }
 
-/// Whether elastic bodies may feel friction that implicit steps know nothing of.
-bool friction_strains(const Scene& scene) {
-  if (scene.time.integrator == Integrator::kExplicit || scene.grid.advection != Advection::kAfterFriction)
-    return false;
-  const auto& colliders = scene.effect<Colliders>().list;
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const auto& material) { return !material.yields(); }) &&
-         std::any_of(colliders.begin(), colliders.end(),
-                     [](const auto& collider) { return collider.friction > 0.0; });
-}
-
 }  // namespace
 
 std::vector<std::string> scene_warnings(const Scene& scene) {
@@ -133,11 +122,6 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
     warnings.push_back("materials." + material.name + ": with friction_angle " + angle +
                        " and this cone_matching the sand can never yield in plane strain; see docs/math.md on "
                        "cone matching");
-  }
-  if (friction_strains(scene)) {
-    warnings.push_back(
-        "grid.advection: friction follows an implicit solve, and with \"after_friction\" strains stiff elastic "
-        "bodies at walls in long steps; \"before_friction\" does not");
   }
   return warnings;
 }

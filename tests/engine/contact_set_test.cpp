@@ -1,0 +1,191 @@
+// Repose tests: contacts of an implicit step by themselves: what they hold, what they bear, and friction, whose
+// impulse lies in Coulomb's cone, whose tangent is its derivative, and which the preconditioner inverts.
+#include "engine/implicit/contact_set.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace repose {
+namespace {
+
+constexpr double kMass = 2.0, kFriction = 0.4;
+constexpr int kNode = 21;
+constexpr std::size_t kAt = kNode * kNodeValues + 1;
+
+/// A node of kMass against a wall that moves along itself.
+struct OneNode {
+  explicit OneNode(Vec3 normal = Vec3(0.0, 1.0, 0.0),
+                   typename Hold<double>::Kind kind = Hold<double>::Kind::kAgainst) {
+    contacts.clear(1);
+    Hold<double> hold;
+    hold.node = kNode;
+    hold.kind = kind;
+    normal.normalize();
+    std::copy_n(normal.data(), 3, hold.normal);
+    std::copy_n(wall.data(), 3, hold.velocity);
+    hold.bound = normal.dot(wall);
+    hold.friction = kFriction;
+    contacts.set_block(0, {hold});
+    masses[kNode * kNodeValues] = kMass;
+    set_velocity(wall);
+  }
+
+  void set_velocity(const Vec3& v) { std::copy_n(v.data(), 3, velocities + kAt); }
+  /// What is left of a residual, of a node at a velocity. What of that counts is in `left`.
+  Vec3 bear(const Vec3& v, const Vec3& residual) {
+    set_velocity(v);
+    std::copy_n(residual.data(), 3, r + kAt);
+    contacts.bear(0, masses, velocities, r, left);
+    return Eigen::Map<const Vec3>(r + kAt);
+  }
+  Vec3 counts() const { return Eigen::Map<const Vec3>(left + kAt); }
+  Vec3 reaction() const {
+    Vec3 found = Vec3::Zero();
+    contacts.for_each_reaction(0, [&](int, const Vec3& j) { found = j; });
+    return found;
+  }
+
+  Vec3 wall{0.5, 0.0, -0.25};
+  ContactSet<double> contacts;
+  double masses[kBlockValues] = {}, velocities[kBlockValues] = {}, r[kBlockValues] = {},
+         left[kBlockValues] = {};
+};
+
+/// Any velocity along the wall, from far below the one at which a node begins to slip to far above.
+Vec3 along_floor(std::mt19937& engine) {
+  std::uniform_real_distribution<double> number(-1.0, 1.0), exponent(-7.0, 1.0);
+  return std::pow(10.0, exponent(engine)) * Vec3(number(engine), 0.0, number(engine)).normalized();
+}
+
+TEST(ContactSet, Node_IsTakenUpWhereItPassesAndLetGoWhereItIsPulled) {
+  OneNode node;
+  EXPECT_EQ(node.contacts.directions(), 0);
+  node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+  EXPECT_EQ(node.contacts.take_up(0, node.velocities), 1);
+  EXPECT_EQ(node.contacts.directions(), 1);
+  node.contacts.obey(0, node.velocities);
+  EXPECT_DOUBLE_EQ(node.velocities[kAt + 1], 0.0);
+  node.bear(node.wall, Vec3(0.0, 3.0, 0.0));
+  EXPECT_EQ(node.contacts.let_go(0), 0);
+  node.bear(node.wall, Vec3(0.0, -3.0, 0.0));
+  EXPECT_EQ(node.contacts.let_go(0), 1);
+  EXPECT_EQ(node.contacts.directions(), 0);
+}
+
+TEST(ContactSet, Friction_LiesInCoulombsConeAndOpposesSlip) {
+  std::mt19937 engine(5);
+  OneNode node;
+  node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+  node.contacts.take_up(0, node.velocities);
+  constexpr double kPush = 3.0, kBound = kFriction * kPush;
+  int sticking = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 slip = along_floor(engine);
+    const Vec3 friction = -node.bear(node.wall + slip, Vec3(0.0, kPush, 0.0));  // of a residual without any
+    EXPECT_NEAR(friction.normalized().dot(slip.normalized()), -1.0, 1e-9);
+    EXPECT_LE(friction.norm(), kBound * (1.0 + 1e-12));
+    if (friction.norm() < (1.0 - 1e-9) * kBound) {
+      ++sticking;
+      EXPECT_LT(slip.norm(), 1e-4 * kBound / kMass);
+      EXPECT_EQ((node.reaction() - Vec3(0.0, kPush, 0.0)).norm(), 0.0);  // nothing was asked of it
+    } else {
+      EXPECT_NEAR((node.reaction() - Vec3(0.0, kPush, 0.0) - friction).norm(), 0.0, 1e-12);
+    }
+  }
+  EXPECT_GT(sticking, 20);
+  EXPECT_LT(sticking, 180);
+}
+
+// A node at rest bears what it is asked to, and counts for what is beyond.
+TEST(ContactSet, FrictionAtRest_BearsWhatItCan) {
+  OneNode node;
+  node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+  node.contacts.take_up(0, node.velocities);
+  constexpr double kPush = 3.0, kBound = kFriction * kPush;
+  for (const double load : {0.0, 0.5, 0.999, 1.001, 2.0}) {
+    const Vec3 asked(0.6 * load * kBound, 0.0, -0.8 * load * kBound), normal(0.0, kPush, 0.0);
+    node.bear(node.wall, normal + asked);
+    const double beyond = std::max(load - 1.0, 0.0) * kBound;
+    EXPECT_NEAR(node.counts().norm(), beyond, 1e-12) << load;
+    EXPECT_NEAR((node.reaction() - normal).norm(), std::min(load, 1.0) * kBound, 1e-12) << load;
+  }
+}
+
+TEST(ContactSet, FrictionOfWhatIsPulled_IsNone) {
+  OneNode node;
+  node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+  node.contacts.take_up(0, node.velocities);
+  EXPECT_EQ(node.bear(node.wall + Vec3(0.3, 0.0, 0.0), Vec3(0.0, -3.0, 0.0)).norm(), 0.0);
+}
+
+// At the same impulse, which the tangent leaves as it is.
+TEST(ContactSet, TangentOfFriction_IsItsDerivative) {
+  std::mt19937 engine(6);
+  OneNode node(Vec3(0.3, 1.0, -0.2), Hold<double>::Kind::kAlong);
+  const Vec3 normal = Vec3(0.3, 1.0, -0.2).normalized(), push = 3.0 * normal;
+  for (int k = 0; k < 100; ++k) {
+    Vec3 slip = along_floor(engine);
+    slip -= normal * normal.dot(slip);
+    Vec3 d = along_floor(engine);
+    d -= normal * normal.dot(d);
+    d *= 1e-4 * slip.norm() / d.norm();
+    const Vec3 change = (node.bear(node.wall + slip + d, push) - node.bear(node.wall + slip - d, push)) / 2.0;
+    node.bear(node.wall + slip, push);
+    node.contacts.linearize(0);
+    double x[kBlockValues] = {}, y[kBlockValues] = {};
+    std::copy_n(d.data(), 3, x + kAt);
+    node.contacts.add_friction(0, x, y);
+    const Vec3 product = Eigen::Map<const Vec3>(y + kAt);
+    EXPECT_NEAR((product - change).norm(), 0.0, 1e-11 + 1e-6 * kMass / 1e-4 * d.norm()) << slip.norm();
+
+    int rubbing = 0;
+    node.contacts.for_each_friction(0, [&](int index, const Mat3& tangent) {
+      ++rubbing;
+      EXPECT_EQ(index, kNode);
+      EXPECT_NEAR((tangent * d - product).norm(), 0.0, 1e-12 * tangent.norm() * d.norm());
+      EXPECT_NEAR((tangent * normal).norm(), 0.0, 1e-12 * tangent.norm());
+    });
+    EXPECT_EQ(rubbing, 1);
+
+    // (m + D)^-1 m (m x + D x) / m = x
+    double z[kBlockValues] = {};
+    for (std::size_t c = 0; c < 3; ++c) z[kAt + c] = x[kAt + c] + y[kAt + c] / kMass;
+    node.contacts.soften(0, node.masses, z);
+    EXPECT_NEAR((Vec3(Eigen::Map<const Vec3>(z + kAt)) - d).norm(), 0.0, 1e-10 * d.norm());
+  }
+}
+
+// By itself the node would go on by (m u - r) / m: friction stops it where that is less than the impulse it
+// has.
+TEST(ContactSet, NodeThatFrictionWouldStop_IsStopped) {
+  OneNode node(Vec3(0.0, 1.0, 0.0), Hold<double>::Kind::kAlong);
+  constexpr double kPush = 3.0, kBound = kFriction * kPush, kSpeed = 0.1;
+  const Vec3 slip(kSpeed, 0.0, 0.0);
+  for (const double load : {-0.9, 0.0, 0.9, 1.1, 3.0}) {  // of B
+    const Vec3 residual = node.bear(node.wall + slip, Vec3(kMass * kSpeed - load * kBound, kPush, 0.0));
+    ASSERT_GT(residual.norm(), 0.0);
+    EXPECT_EQ(node.contacts.stop_held(0, node.masses, node.r, node.velocities), load < 1.0 ? 1 : 0) << load;
+    const Vec3 left = Vec3(Eigen::Map<const Vec3>(node.velocities + kAt)) - node.wall;
+    EXPECT_NEAR((left - (load < 1.0 ? Vec3(0.0, 0.0, 0.0) : slip)).norm(), 0.0, 1e-15) << load;
+  }
+}
+
+TEST(ContactSet, NodeThatWouldSlipBack_StopsAtTheWallsVelocity) {
+  OneNode node(Vec3(0.0, 1.0, 0.0), Hold<double>::Kind::kAlong);
+  node.bear(node.wall + Vec3(0.1, 0.0, 0.0), Vec3(0.0, 3.0, 0.0));
+  node.contacts.linearize(0);
+  const auto after = [&](const Vec3& to) {
+    double from[kBlockValues] = {}, v[kBlockValues] = {};
+    const Vec3 begin = node.wall + Vec3(0.1, 0.0, 0.0), end = node.wall + to;
+    std::copy_n(begin.data(), 3, from + kAt);
+    std::copy_n(end.data(), 3, v + kAt);
+    node.contacts.stop_turning(0, from, v);
+    return Vec3(Vec3(Eigen::Map<const Vec3>(v + kAt)) - node.wall);
+  };
+  EXPECT_NEAR(after(Vec3(-0.2, 0.0, 0.1)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((after(Vec3(0.05, 0.0, 0.1)) - Vec3(0.05, 0.0, 0.1)).norm(), 0.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace repose

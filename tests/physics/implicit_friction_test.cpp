@@ -1,0 +1,79 @@
+// Repose tests: friction that is solved for within implicit steps obeys Coulomb's law, in steps of up to 64
+// explicit ones: a stiff block slides to rest, stays on a slope below the angle of friction, and slides on one
+// above it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/physics/implicit_probe.h"
+
+namespace repose {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+/// A block of 8 cells that lies on a floor.
+constexpr const char* kBlock = R"json({"repose": 1, "name": "block", "parameters": {"dx": 0.02},
+  "grid": {"spacing": "= dx", "plane_strain": "z"},
+  "materials": {"gel": {"type": "elastic", "density": 2200, "youngs_modulus": 3.5e7, "poisson_ratio": 0.3}},
+  "bodies": [{"name": "block", "material": "gel", "particles_per_cell": 4,
+              "shape": {"type": "box", "lower": [0, "= dx / 2", -1], "upper": ["= 8 * dx", "= 8.5 * dx", 1]}}],
+  "colliders": [{"name": "floor", "contact": "separating", "friction": 0.3, "shape": {"type": "plane"}}]})json";
+
+/// The mean velocity along the floor, m/s, after `time` seconds in steps of so many explicit ones.
+double velocity_after(double time, double multiple, std::vector<std::string> overrides) {
+  overrides.push_back("implicit.mode=projected");
+  const auto simulation = simulate(in_long_steps(kBlock, multiple, std::move(overrides)), 1);
+  while (simulation->counters().time < time) {
+    const auto step = simulation->step();
+    if (!step) throw std::runtime_error(step.error().text());
+  }
+  const Diagnostics figures = simulation->diagnose();
+  const double late = simulation->counters().time - time;
+  EXPECT_LT(late, 0.01);
+  return figures.momentum[0] / figures.mass;
+}
+
+/// Gravity on a slope of so many degrees, seen from the slope.
+std::string slope(double degrees) {
+  const double angle = degrees * M_PI / 180.0;
+  return "gravity.acceleration=[" + std::to_string(kGravity * std::sin(angle)) + ", " +
+         std::to_string(-kGravity * std::cos(angle)) + ", 0]";
+}
+
+struct Case {
+  double multiple;  ///< explicit steps
+  double share;     ///< of the impulse of friction, that the tolerance of the solve may cost
+  std::vector<std::string> overrides{};
+};
+const Case kCases[] = {{4.0, 0.02}, {16.0, 0.02}, {64.0, 0.06}, {64.0, 0.01, {"implicit.tolerance=1e-3"}}};
+
+TEST(ImplicitFriction, BlockThatSlides_LosesMuGPerSecond) {
+  for (const Case& each : kCases) {
+    std::vector<std::string> overrides = each.overrides;
+    overrides.push_back("bodies[0].velocity=[1, 0, 0]");
+    const double early = velocity_after(0.05, each.multiple, overrides);
+    const double late = velocity_after(0.25, each.multiple, overrides);
+    const double impulse = 0.3 * kGravity * 0.2;
+    report("slides_" + std::to_string(static_cast<int>(each.multiple)), (early - late) / impulse - 1.0);
+    EXPECT_NEAR(early - late, impulse, each.share * impulse) << each.multiple;
+    EXPECT_NEAR(velocity_after(0.45, each.multiple, overrides), 0.0, 1e-3) << each.multiple;
+  }
+}
+
+TEST(ImplicitFriction, BlockOnASlope_SlidesAboveTheAngleOfFrictionAlone) {
+  for (const Case& each : kCases) {
+    std::vector<std::string> overrides = each.overrides;
+    overrides.push_back(slope(15.0));  // atan 0.3 is 16.7 degrees
+    EXPECT_NEAR(velocity_after(0.3, each.multiple, overrides), 0.0, 1e-3) << each.multiple;
+    overrides.back() = slope(20.0);
+    const double angle = 20.0 * M_PI / 180.0, impulse = 0.3 * kGravity * 0.3 * std::cos(angle);
+    const double slides = kGravity * 0.3 * std::sin(angle) - impulse;
+    const double found = velocity_after(0.3, each.multiple, overrides);
+    report("slope_" + std::to_string(static_cast<int>(each.multiple)), (slides - found) / impulse);
+    EXPECT_NEAR(found, slides, each.share * impulse) << each.multiple;
+  }
+}
+
+}  // namespace
+}  // namespace repose
