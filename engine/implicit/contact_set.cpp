@@ -25,6 +25,7 @@ template <class Real>
 void ContactSet<Real>::clear(std::size_t blocks) {
   nodes_.resize(blocks);
   for (auto& nodes : nodes_) nodes.clear();
+  tangents_.resize(blocks);
 }
 
 template <class Real>
@@ -150,32 +151,37 @@ void ContactSet<Real>::bear(std::size_t block, const Real* nodes, const Real* v,
 }
 
 template <class Real>
-void ContactSet<Real>::linearize(std::size_t block) {
-  for (Node& node : nodes_[block]) node.tangent = node.evaluated;
+void ContactSet<Real>::linearize(std::size_t block, const Real* nodes) {
+  Tangents& tangents = tangents_[block];
+  tangents.rub.clear();
+  tangents.soften.clear();
+  for (Node& node : nodes_[block]) {
+    const Friction<Real>& friction = node.tangent = node.evaluated;
+    if (node.rank == 0) continue;
+    const bool rubs = friction.stiffness > Real(0);
+    const Real mass = nodes[node.index * kNodeValues];
+    Matrix3 resist, soften;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3 along = along_walls(node, Vector3::Unit(axis));
+      resist.col(axis) = friction.resist(along);
+      soften.col(axis) = rubs ? friction.soften(mass, along) : along;
+    }
+    if (rubs) tangents.rub.push_back({node.index, resist});
+    tangents.soften.push_back({node.index, soften});
+  }
 }
 
 template <class Real>
 void ContactSet<Real>::add_friction(std::size_t block, const Real* x, Real* y) const {
-  for (const Node& node : nodes_[block]) {
-    if (node.tangent.stiffness > Real(0)) at_node(y, node.index) += node.tangent.resist(at_node(x, node.index));
-  }
+  for (const AtNode& rub : tangents_[block].rub) at_node(y, rub.node) += rub.matrix * at_node(x, rub.node);
 }
 
 template <class Real>
-void ContactSet<Real>::soften(std::size_t block, const Real* nodes, Real* z) const {
-  for (const Node& node : nodes_[block]) {
-    if (!(node.tangent.stiffness > Real(0))) continue;
-    auto at = at_node(z, node.index);
-    at = node.tangent.soften(nodes[node.index * kNodeValues], at);
+void ContactSet<Real>::soften(std::size_t block, Real* z) const {
+  for (const AtNode& softer : tangents_[block].soften) {
+    auto at = at_node(z, softer.node);
+    at = softer.matrix * at;  // of a copy
   }
-}
-
-template <class Real>
-Mat3 ContactSet<Real>::friction(const Node& node) {
-  Eigen::Matrix<Real, 3, 3> d;
-  for (int axis = 0; axis < 3; ++axis)
-    d.col(axis) = node.tangent.resist(along_walls(node, Vector3::Unit(axis)));
-  return d.template cast<double>();
 }
 
 template <class Real>

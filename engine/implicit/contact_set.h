@@ -40,18 +40,16 @@ class ContactSet {
     }
   }
 
-  /// Makes the tangent D of friction that at the velocities which were evaluated last.
-  void linearize(std::size_t block);
+  /// Makes the tangent D of friction, for the calls below, that at the velocities which were evaluated last.
+  void linearize(std::size_t block, const Real* nodes);
   /// y += D x, of an x that is zero along what is held.
   void add_friction(std::size_t block, const Real* x, Real* y) const;
-  /// z = (m + D)^-1 m z
-  void soften(std::size_t block, const Real* nodes, Real* z) const;
+  /// z = Q (m + D)^-1 m z, Q what takes all that lies along directions that are held.
+  void soften(std::size_t block, Real* z) const;
   /// Calls visit(node, D) for the nodes that rub.
   template <class Visit>
   void for_each_friction(std::size_t block, Visit visit) const {
-    for (const Node& node : nodes_[block]) {
-      if (node.tangent.stiffness > Real(0)) visit(node.index, friction(node));
-    }
+    for (const AtNode& rub : tangents_[block].rub) visit(rub.node, rub.matrix);
   }
 
   /// Lets all contacts go that only push.
@@ -82,14 +80,23 @@ class ContactSet {
     std::vector<std::uint8_t> active;  // per hold
     Friction<Real> evaluated, tangent;
   };
+  /// What linear solves ask for in every iteration, without the rest of a node.
+  using Matrix3 = Eigen::Matrix<Real, 3, 3>;
+  struct AtNode {
+    int node;
+    Matrix3 matrix;
+  };
+  struct Tangents {
+    std::vector<AtNode> rub, soften;  // D, and Q (m + D)^-1 m
+  };
   static void span(Node& node);
   static Vector3 along_walls(const Node& node, Vector3 x);
   static const Hold<Real>* rough(const Node& node);
   static Vector3 slip(const Node& node, const Hold<Real>& hold, const Real* v);
   static Real friction_bound(const Node& node);
-  static Mat3 friction(const Node& node);
 
   std::vector<std::vector<Node>> nodes_;  // per block
+  std::vector<Tangents> tangents_;        // per block
 };
 
 }  // namespace repose

@@ -190,7 +190,7 @@ void MomentumBalance<Real>::linearize() {
   sweep_.over_particles({}, [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
     plan_.sets[set].kernels.linearize[mode](at_trial(set, chunk, own));
   });
-  sweep_.for_each_block([&](std::size_t b) { contacts_.linearize(b); });
+  sweep_.for_each_block([&](std::size_t b) { contacts_.linearize(b, sweep_.state().nodes.block(b)); });
   system_.prepare();
 }
 

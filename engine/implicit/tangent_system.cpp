@@ -73,13 +73,13 @@ void TangentSystem<Real>::prepare() {
     sweep_.add_stiffness(chunk, own, tangent(set, chunk), square_dt * chunk.set.particle_volume);
   });
   sweep_.for_each_block([&](std::size_t b) {
-    contacts_.for_each_friction(b, [&](int node, const Mat3& friction) {
+    contacts_.for_each_friction(b, [&](int node, const auto& friction) {
       const std::size_t at = static_cast<std::size_t>(node) * kNodeValues + 1;
       Real *const d = diagonal_.block(b) + at, *const s = side_.block(b) + at;
-      for (int c = 0; c < 3; ++c) d[c] += static_cast<Real>(friction(c, c));
-      s[0] += static_cast<Real>(friction(1, 0));
-      s[1] += static_cast<Real>(friction(2, 0));
-      s[2] += static_cast<Real>(friction(2, 1));
+      for (int c = 0; c < 3; ++c) d[c] += friction(c, c);
+      s[0] += friction(1, 0);
+      s[1] += friction(2, 0);
+      s[2] += friction(2, 1);
     });
     const Real* const nodes = sweep_.state().nodes.block(b);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
@@ -90,32 +90,40 @@ void TangentSystem<Real>::prepare() {
 
 template <class Real>
 void TangentSystem<Real>::Part::precondition(const Vector& r, Vector& z) const {
-  const Real* from = r.block(block_);
+  const Real *const from = r.block(block_), *const nodes = system_.sweep_.state().nodes.block(block_);
   Real* const to = z.block(block_);
-  if (system_.preconditioner_ == Preconditioner::kBlocks) {
-    Real free[kBlockValues];  // a node's block would make what is held part of what is not
-    std::copy_n(from, kBlockValues, free);
-    system_.contacts_.project(block_, free);
-    from = free;
-    const Real *const d = system_.diagonal_.block(block_), *const s = system_.side_.block(block_);
-    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      const Real x = from[at + 1], y = from[at + 2], w = from[at + 3];
-      to[at] = Real(0);
-      to[at + 1] = d[at + 1] * x + s[at + 1] * y + s[at + 2] * w;
-      to[at + 2] = s[at + 1] * x + d[at + 2] * y + s[at + 3] * w;
-      to[at + 3] = s[at + 2] * x + s[at + 3] * y + d[at + 3] * w;
-    }
-  } else if (const Real* const nodes = system_.sweep_.state().nodes.block(block_);
-             system_.preconditioner_ == Preconditioner::kMass) {
-    kernels().over_mass(nodes, from, to);
-    system_.contacts_.soften(block_, nodes, to);
-  } else {
-    for (std::size_t at = 0; at < kBlockValues; ++at) {
-      const std::size_t value = at % kNodeValues;
-      to[at] = value != 0 && nodes[at - value] > Real(0) ? from[at] : Real(0);
-    }
+  const ContactSet<Real>& contacts = system_.contacts_;
+  switch (system_.preconditioner_) {
+    case Preconditioner::kMass:
+      kernels().over_mass(nodes, from, to);
+      contacts.soften(block_, to);
+      break;
+    case Preconditioner::kBlocks:
+      std::copy_n(from, kBlockValues, to);
+      contacts.project(block_, to);  // or the blocks would make what is held part of what is not
+      system_.times_inverse_blocks(block_, to);
+      contacts.project(block_, to);
+      break;
+    case Preconditioner::kNone:
+      for (std::size_t at = 0; at < kBlockValues; ++at) {
+        const std::size_t value = at % kNodeValues;
+        to[at] = value != 0 && nodes[at - value] > Real(0) ? from[at] : Real(0);
+      }
+      contacts.project(block_, to);
+      break;
   }
-  system_.contacts_.project(block_, to);
+}
+
+template <class Real>
+void TangentSystem<Real>::times_inverse_blocks(std::size_t block, Real* z) const {
+  const Real *const d = diagonal_.block(block), *const s = side_.block(block);
+  for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+    const Real x = z[at + 1], y = z[at + 2], w = z[at + 3];
+    z[at] = Real(0);
+    z[at + 1] = d[at + 1] * x + s[at + 1] * y + s[at + 2] * w;
+    z[at + 2] = s[at + 1] * x + d[at + 2] * y + s[at + 3] * w;
+    z[at + 3] = s[at + 2] * x + s[at + 3] * y + d[at + 3] * w;
+  }
 }
 
 template <class Real>

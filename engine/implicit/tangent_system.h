@@ -62,6 +62,8 @@ class TangentSystem {
   std::size_t bytes() const { return tangents_.bytes() + diagonal_.bytes() + side_.bytes(); }
 
  private:
+  void times_inverse_blocks(std::size_t block, Real* z) const;
+
   BlockSweep<Real>& sweep_;
   const ContactSet<Real>& contacts_;
   Preconditioner preconditioner_;

@@ -132,7 +132,7 @@ TEST(ContactSet, TangentOfFriction_IsItsDerivative) {
     d *= 1e-4 * slip.norm() / d.norm();
     const Vec3 change = (node.bear(node.wall + slip + d, push) - node.bear(node.wall + slip - d, push)) / 2.0;
     node.bear(node.wall + slip, push);
-    node.contacts.linearize(0);
+    node.contacts.linearize(0, node.masses);
     double x[kBlockValues] = {}, y[kBlockValues] = {};
     std::copy_n(d.data(), 3, x + kAt);
     node.contacts.add_friction(0, x, y);
@@ -151,7 +151,7 @@ TEST(ContactSet, TangentOfFriction_IsItsDerivative) {
     // (m + D)^-1 m (m x + D x) / m = x
     double z[kBlockValues] = {};
     for (std::size_t c = 0; c < 3; ++c) z[kAt + c] = x[kAt + c] + y[kAt + c] / kMass;
-    node.contacts.soften(0, node.masses, z);
+    node.contacts.soften(0, z);
     EXPECT_NEAR((Vec3(Eigen::Map<const Vec3>(z + kAt)) - d).norm(), 0.0, 1e-10 * d.norm());
   }
 }
@@ -174,7 +174,7 @@ TEST(ContactSet, NodeThatFrictionWouldStop_IsStopped) {
 TEST(ContactSet, NodeThatWouldSlipBack_StopsAtTheWallsVelocity) {
   OneNode node(Vec3(0.0, 1.0, 0.0), Hold<double>::Kind::kAlong);
   node.bear(node.wall + Vec3(0.1, 0.0, 0.0), Vec3(0.0, 3.0, 0.0));
-  node.contacts.linearize(0);
+  node.contacts.linearize(0, node.masses);
   const auto after = [&](const Vec3& to) {
     double from[kBlockValues] = {}, v[kBlockValues] = {};
     const Vec3 begin = node.wall + Vec3(0.1, 0.0, 0.0), end = node.wall + to;
