@@ -99,14 +99,41 @@ void ContactSet<Real>::project(std::size_t block, Real* x) const {
   }
 }
 
-/// The first active contact with friction, or null: with several, the one whose velocity counts.
+/// mu J_n of an active contact of a node; none of one whose normal another has had before it.
+template <class Real>
+Real ContactSet<Real>::friction_bound(const Node& node, std::size_t k) {
+  const Hold<Real>& hold = node.holds[k];
+  if (node.active[k] == 0 || !(hold.friction > Real(0))) return Real(0);
+  for (std::size_t before = 0; before < k; ++before) {
+    const bool same = normal_of(node.holds[before]).dot(normal_of(hold)) > Real(0.999);
+    if (same && node.active[before] != 0) return Real(0);
+  }
+  const Real pushed = normal_of(hold).dot(node.reaction);
+  return hold.friction *
+         (hold.kind == Hold<Real>::Kind::kAgainst ? std::max(pushed, Real(0)) : std::abs(pushed));
+}
+
+/// B, over all active contacts of a node.
+template <class Real>
+Real ContactSet<Real>::friction_bound(const Node& node) {
+  Real sum = Real(0);
+  for (std::size_t k = 0; k < node.holds.size(); ++k) sum += friction_bound(node, k);
+  return sum;
+}
+
+/// The contact whose friction can bear most, or null: with several, the one whose velocity counts.
 template <class Real>
 const Hold<Real>* ContactSet<Real>::rough(const Node& node) {
   if (node.rank == 3) return nullptr;
+  const Hold<Real>* roughest = nullptr;
+  Real most = Real(0);
   for (std::size_t k = 0; k < node.holds.size(); ++k) {
-    if (node.active[k] != 0 && node.holds[k].friction > Real(0)) return &node.holds[k];
+    const Real bound = friction_bound(node, k);
+    if (!(bound > most)) continue;
+    most = bound;
+    roughest = &node.holds[k];
   }
-  return nullptr;
+  return roughest;
 }
 
 /// The velocity of a node along its walls, against one of them.
@@ -114,20 +141,6 @@ template <class Real>
 typename ContactSet<Real>::Vector3 ContactSet<Real>::slip(const Node& node, const Hold<Real>& hold,
                                                           const Real* v) {
   return along_walls(node, at_node(v, node.index) - Eigen::Map<const Vector3>(hold.velocity));
-}
-
-/// mu J_n, over all active contacts of a node.
-template <class Real>
-Real ContactSet<Real>::friction_bound(const Node& node) {
-  Real sum = Real(0);
-  for (std::size_t k = 0; k < node.holds.size(); ++k) {
-    const Hold<Real>& hold = node.holds[k];
-    if (node.active[k] == 0) continue;
-    const Real pushed = normal_of(hold).dot(node.reaction);
-    sum += hold.friction *
-           (hold.kind == Hold<Real>::Kind::kAgainst ? std::max(pushed, Real(0)) : std::abs(pushed));
-  }
-  return sum;
 }
 
 template <class Real>
@@ -196,6 +209,7 @@ void ContactSet<Real>::release(std::size_t block) {
 
 template <class Real>
 int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
+  constexpr Real kRounding = Real(1e-6);
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
@@ -203,7 +217,7 @@ int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
       const Hold<Real>& hold = node.holds[k];
       if (node.active[k] != 0) continue;
       const Real along = normal_of(hold).dot(at_node(v, node.index));
-      if (along < hold.bound - Real(1e-6) * std::abs(hold.bound)) {
+      if (along < hold.bound - kRounding * (std::abs(hold.bound) + at_node(v, node.index).norm())) {
         node.active[k] = 1;
         ++changed;
       }
@@ -237,7 +251,9 @@ int ContactSet<Real>::stop_held(std::size_t block, const Real* nodes, const Real
   int stopped = 0;
   for (const Node& node : nodes_[block]) {
     if (!node.evaluated.slips) continue;
-    const Vector3 u = slip(node, *rough(node), v), asked = at_node(r, node.index) + node.evaluated.impulse;
+    const Hold<Real>* const wall = rough(node);
+    if (wall == nullptr) continue;
+    const Vector3 u = slip(node, *wall, v), asked = at_node(r, node.index) + node.evaluated.impulse;
     if ((nodes[node.index * kNodeValues] * u - asked).norm() > friction_bound(node)) continue;
     at_node(v, node.index) -= u;
     ++stopped;

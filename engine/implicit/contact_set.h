@@ -93,6 +93,7 @@ class ContactSet {
   static Vector3 along_walls(const Node& node, Vector3 x);
   static const Hold<Real>* rough(const Node& node);
   static Vector3 slip(const Node& node, const Hold<Real>& hold, const Real* v);
+  static Real friction_bound(const Node& node, std::size_t k);
   static Real friction_bound(const Node& node);
 
   std::vector<std::vector<Node>> nodes_;  // per block

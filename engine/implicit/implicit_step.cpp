@@ -204,8 +204,9 @@ template <class Real>
 bool ImplicitStep<Real>::change_contacts(Vector& v) {
   const auto [changes] = sweep_.sums_of_blocks([&](std::size_t b) {
     if (!contacts_.any(b)) return std::array{0.0};
-    const int freed = contacts_.let_go(b);
-    return std::array{static_cast<double>(freed + contacts_.take_up(b, v.block(b)))};
+    // In this order: a contact that was let go has its node on the wall still.
+    const int taken = contacts_.take_up(b, v.block(b));
+    return std::array{static_cast<double>(taken + contacts_.let_go(b))};
   });
   if (changes == 0.0) return false;
   sweep_.for_each_block([&](std::size_t b) { contacts_.obey(b, v.block(b)); });

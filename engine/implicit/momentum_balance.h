@@ -26,10 +26,10 @@ class MomentumBalance {
   /// A step from the nodes of the sweep's state, which hold mass and v^free, and `before_forces`, with v^n.
   void begin();
 
-  /// |r(dv)| in the norm of the inverse mass, kg^1/2 m/s; nothing where a particle would be turned inside out
-  /// or something is not finite.
+  /// |r(dv)| in the norm of the inverse mass, kg^1/2 m/s, less what nodes that stick bear; nothing where a
+  /// particle would be turned inside out or something is not finite.
   std::optional<double> evaluate(const Vector& dv);
-  /// r of the dv that was evaluated last, less what contacts bear.
+  /// r of the dv that was evaluated last, less what holds bear, with the friction of Coulomb's regularised law.
   const Vector& residual() const { return residual_; }
   /// The larger of the outer and the inner impulses of the step, in that norm, the least seen in this step. Of
   /// a stiff body inner ones are large far from the solution: what counts is what acts at it.

@@ -13,11 +13,13 @@
 //   solve(double share, Vector& step)                  step = -A^-1 r(v), |A step + r| <= share |r|
 //   double reach(const Vector& step, double length)    the longest length along step at which r is defined,
 //                                                      when at `length`, evaluated last, it is not
-//   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step
+//   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step, or near
+//                                                                                it, as constraints have it
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -66,16 +68,14 @@ class Newton {
   NewtonReport solve(std::optional<double> norm) {
     if (!norm) return end(NewtonEnd::kUndefined);
     report_.first = report_.last = *norm;
+    // A guess may be right but for contacts that pull.
+    if (report_.last <= tolerance() && !change_contacts()) return end(NewtonEnd::kUndefined);
     while (report_.history.push_back(report_.last), report_.last > tolerance()) {
       if (report_.iterations == stop_.iterations) return end(NewtonEnd::kIterations);
       ++report_.iterations;
       if (!direction()) return end(NewtonEnd::kUnsolved);
       if (!search()) return end(NewtonEnd::kNoDescent);
-      if (2 * report_.iterations > stop_.iterations || !problem_.change_contacts(v_)) continue;
-      ++report_.contact_changes;
-      norm = problem_.evaluate(v_);
-      if (!norm) return end(NewtonEnd::kUndefined);
-      report_.last = *norm;
+      if (2 * report_.iterations <= stop_.iterations && !change_contacts()) return end(NewtonEnd::kUndefined);
     }
     return end(NewtonEnd::kConverged);
   }
@@ -95,6 +95,15 @@ class Newton {
   }
 
   double tolerance() const { return stop_.tolerance * problem_.scale(); }
+
+  /// Returns whether the residual is defined still.
+  bool change_contacts() {
+    if (!problem_.change_contacts(v_)) return true;
+    ++report_.contact_changes;
+    const std::optional<double> norm = problem_.evaluate(v_);
+    report_.last = norm.value_or(std::numeric_limits<double>::infinity());
+    return norm.has_value();
+  }
 
   bool direction() {
     problem_.linearize();
@@ -117,7 +126,8 @@ class Newton {
         report_.last = *norm;
         return true;
       }
-      length = norm ? 0.5 * length : std::min(0.5 * length, 0.9 * problem_.reach(step_, length));
+      const double reach = norm ? 1.0 : problem_.reach(step_, length);
+      length = std::max(0.1 * length, std::min(0.5 * length, 0.9 * reach));  // `take` may have left the line
       ++report_.shortened;
     }
     return false;

@@ -192,6 +192,19 @@ TEST(Newton, WithAOneSidedConstraint_HoldsWhatWouldPassIt) {
   EXPECT_NEAR(run.v[1], 0.5, 1e-12);
 }
 
+// Held at 0.25 by the guess, where nothing is left of the residual, though it is pulled away to 2.
+TEST(Newton, WithAGuessThatIsHeldByAContactThatPulls_LetsItGo) {
+  DenseProblem problem;
+  problem.residual = [](const Eigen::VectorXd& v) { return vector1(v[0] - 2.0); };
+  problem.derivative = [](const Eigen::VectorXd&) { return matrix1(1.0); };
+  problem.lower = 0.25;
+  problem.held = true;
+  const Outcome run = solve_from(problem, vector1(0.25), 1e-12);
+  EXPECT_EQ(run.report.end, NewtonEnd::kConverged);
+  EXPECT_EQ(run.report.contact_changes, 1);
+  EXPECT_NEAR(run.v[0], 2.0, 1e-12);
+}
+
 // The cap, a solver that gives up, and a residual that no length lowers are told apart.
 TEST(Newton, ThatCannotGoOn_SaysWhy) {
   DenseProblem problem;
