@@ -193,11 +193,14 @@ void Stepper<Real>::update_nodes(State<Real>& state, Real dt) {
   });
 }
 
-/// What holds a block's nodes, and how fast they are then. Explicit steps do it while the nodes are in cache.
+/// What holds a block's nodes, and how fast those are then that move particles. Explicit steps do it while the
+/// nodes are in cache.
 template <class Real>
 void Stepper<Real>::hold_block(NodeBlock<Real>& nodes) {
   for (const auto& pass : plan_.holds) pass.run(nodes);
-  plan_.kernels->bound(nodes.nodes, bounds_[nodes.block]);
+  const auto& rubbed = nodes.state.after_friction;
+  const bool rubs = plan_.advection == Advection::kAfterFriction && rubbed.has(nodes.block);
+  plan_.kernels->bound(rubs ? rubbed.block(nodes.block) : nodes.nodes, bounds_[nodes.block]);
 }
 
 /// Solves for the nodes' velocities, then holds them. Returns whether a solution was found.

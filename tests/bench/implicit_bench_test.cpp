@@ -32,7 +32,7 @@ class Studies : public testing::TestWithParam<Study> {};
 TEST_P(Studies, TinyCase_RowsAsWideAsTheHead) {
   const auto table = GetParam().run(tiny());
   ASSERT_TRUE(table) << table.error().text();
-  EXPECT_GE(table->rows.size(), 2u);
+  EXPECT_FALSE(table->rows.empty());
   for (const auto& row : table->rows) {
     ASSERT_EQ(row.size(), table->head.size());
     EXPECT_NE(row.front(), "");

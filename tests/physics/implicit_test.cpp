@@ -54,6 +54,23 @@ TEST(Implicit, Column_RunsAsFarAsWithExplicitSteps) {
   EXPECT_LT(run_out(column({"implicit.mode=lagged"})), 0.5 * explicit_steps);
 }
 
+/// A floor that may be left, on which sand rubs.
+const std::vector<std::string> kRough{"colliders[0].contact=separating", "colliders[0].friction=0.5"};
+
+std::vector<std::string> rough(std::vector<std::string> overrides) {
+  overrides.insert(overrides.end(), kRough.begin(), kRough.end());
+  return overrides;
+}
+
+TEST(Implicit, ColumnOnARoughFloor_RunsAsFarInStepsOfAnyLength) {
+  const double explicit_steps = run_out(column(rough({"time.integrator=explicit"})));
+  for (const char* longest : {"3e-4", "1e-3", "3e-3"}) {
+    const double implicit_steps = run_out(column(rough({std::string("time.max_step=") + longest})));
+    report(std::string("rough_floor_") + longest, implicit_steps / explicit_steps);
+    EXPECT_NEAR(implicit_steps, explicit_steps, 0.05 * explicit_steps) << longest;
+  }
+}
+
 TEST(Implicit, FreeFall_IsThatOfTheVelocityAtTheEnd) {
   const auto simulation =
       simulate(column({"colliders=[]", "grid.precision=double", "implicit.tolerance=1e-10"}), 1);
@@ -97,6 +114,9 @@ TEST(Implicit, ThreadsAndCheckpoints_SameBits) {
       expect_same_bits(
           {std::string("implicit.mode=") + mode, std::string("implicit.preconditioner=") + preconditioner});
     }
+  }
+  for (const char* preconditioner : {"mass", "blocks"}) {
+    expect_same_bits(rough({std::string("implicit.preconditioner=") + preconditioner}));
   }
 }
 
