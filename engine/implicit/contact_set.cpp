@@ -26,6 +26,10 @@ void ContactSet<Real>::clear(std::size_t blocks) {
   nodes_.resize(blocks);
   for (auto& nodes : nodes_) nodes.clear();
   tangents_.resize(blocks);
+  for (Tangents& tangents : tangents_) {
+    tangents.rub.clear();
+    tangents.soften.clear();
+  }
 }
 
 template <class Real>
@@ -99,7 +103,8 @@ void ContactSet<Real>::project(std::size_t block, Real* x) const {
   }
 }
 
-/// mu J_n of an active contact of a node; none of one whose normal another has had before it.
+/// mu J_n of an active contact of a node; none of one whose normal another has had before it: where solids meet
+/// in one surface, the first of the scene takes the whole impulse, as in the pass that follows.
 template <class Real>
 Real ContactSet<Real>::friction_bound(const Node& node, std::size_t k) {
   const Hold<Real>& hold = node.holds[k];
@@ -154,7 +159,7 @@ void ContactSet<Real>::bear(std::size_t block, const Real* nodes, const Real* v,
     const Hold<Real>* const wall = rough(node);
     if (wall == nullptr) continue;
     const Real mass = nodes[node.index * kNodeValues], bound = friction_bound(node);
-    if (!(mass > Real(0)) || !(bound > Real(0))) continue;
+    if (!(mass > Real(0))) continue;
     const Vector3 u = slip(node, *wall, v);
     node.evaluated = Friction<Real>(mass, bound, u, asked);
     node.reaction += node.evaluated.impulse;

@@ -17,8 +17,8 @@ void TangentSystem<Real>::follow_topology() {
   }
 }
 
-/// y = A x: mass, and what particles push with the change of their stress. What contacts hold and what is empty
-/// is left to the preconditioner, which lets none of it through.
+/// y = A x: mass, friction, and what particles push with the change of their stress. What contacts hold and
+/// what is empty is left to the preconditioner, which lets none of it through.
 template <class Real>
 void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
   const Real weight = static_cast<Real>(1.0 + shift_);
