@@ -46,6 +46,8 @@ class BlockSweep {
   State<Real>& state() const { return *state_; }
   Real dt() const { return dt_; }
   const Kernels<Real>& kernels() const { return *plan_.kernels; }
+  /// Whether the C of particles is their gradient of velocity.
+  bool keeps_gradient() const { return plan_.transfer.figures().affine == Affine::kFull; }
 
   /// Calls body(block) for all blocks of nodes.
   template <class Body>

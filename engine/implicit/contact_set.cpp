@@ -28,7 +28,7 @@ void ContactSet<Real>::clear(std::size_t blocks) {
   tangents_.resize(blocks);
   for (Tangents& tangents : tangents_) {
     tangents.rub.clear();
-    tangents.soften.clear();
+    tangents.inverse.clear();
   }
 }
 
@@ -172,20 +172,20 @@ template <class Real>
 void ContactSet<Real>::linearize(std::size_t block, const Real* nodes) {
   Tangents& tangents = tangents_[block];
   tangents.rub.clear();
-  tangents.soften.clear();
+  tangents.inverse.clear();
   for (Node& node : nodes_[block]) {
     const Friction<Real>& friction = node.tangent = node.evaluated;
     if (node.rank == 0) continue;
     const bool rubs = friction.stiffness > Real(0);
     const Real mass = nodes[node.index * kNodeValues];
-    Matrix3 resist, soften;
+    Matrix3 resist, inverse;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3 along = along_walls(node, Vector3::Unit(axis));
       resist.col(axis) = friction.resist(along);
-      soften.col(axis) = rubs ? friction.soften(mass, along) : along;
+      inverse.col(axis) = rubs ? friction.soften(mass, along) : along;
     }
     if (rubs) tangents.rub.push_back({node.index, resist});
-    tangents.soften.push_back({node.index, soften});
+    tangents.inverse.push_back({node.index, inverse});
   }
 }
 
@@ -195,10 +195,10 @@ void ContactSet<Real>::add_friction(std::size_t block, const Real* x, Real* y) c
 }
 
 template <class Real>
-void ContactSet<Real>::soften(std::size_t block, Real* z) const {
-  for (const AtNode& softer : tangents_[block].soften) {
-    auto at = at_node(z, softer.node);
-    at = softer.matrix * at;  // of a copy
+void ContactSet<Real>::precondition(std::size_t block, Real* z) const {
+  for (const AtNode& held : tangents_[block].inverse) {
+    auto at = at_node(z, held.node);
+    at = held.matrix * at;  // of a copy
   }
 }
 

@@ -44,8 +44,9 @@ class ContactSet {
   void linearize(std::size_t block, const Real* nodes);
   /// y += D x, of an x that is zero along what is held.
   void add_friction(std::size_t block, const Real* x, Real* y) const;
-  /// z = Q (m + D)^-1 m z, Q what takes all that lies along directions that are held.
-  void soften(std::size_t block, Real* z) const;
+  /// z over mass as contacts have it: z = Q (m + D)^-1 m z, Q what takes all that lies along directions that are
+  /// held.
+  void precondition(std::size_t block, Real* z) const;
   /// Calls visit(node, D) for the nodes that rub.
   template <class Visit>
   void for_each_friction(std::size_t block, Visit visit) const {
@@ -87,7 +88,7 @@ class ContactSet {
     Matrix3 matrix;
   };
   struct Tangents {
-    std::vector<AtNode> rub, soften;  // D, and Q (m + D)^-1 m
+    std::vector<AtNode> rub, inverse;  // D, and Q (m + D)^-1 m
   };
   static void span(Node& node);
   static Vector3 along_walls(const Node& node, Vector3 x);

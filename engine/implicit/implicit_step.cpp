@@ -42,10 +42,10 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   NewtonStop stop;
   stop.iterations = static_cast<int>(settings.newton_iterations);
   stop.tolerance = settings.tolerance;
-  report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
   linear_ = SolveStatus::kConverged;
   report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve(norm);
   report.linear = linear_;
+  report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
   if (solved(report.newton.end)) publish(v_);
   return report;
 }
@@ -67,30 +67,27 @@ void ImplicitStep<Real>::carry_acceleration() {
   kept.blocks.assign(blocks.begin(), blocks.end());
 }
 
-/// The first guess: the change of velocity of the step before, at its rate, or none where that is better.
-/// Returns |r| there, as evaluated last.
+/// The first guess: the change of velocity of the step before, at its rate, or none where that would turn
+/// something inside out. Returns |r| there, as evaluated last.
 template <class Real>
 std::optional<double> ImplicitStep<Real>::start() {
-  if (!accelerated_) return start_at(v_, false);
-  const std::optional<double> by_rate = start_at(v_, true);
-  if (by_rate && *by_rate <= kGood * scale()) return by_rate;
-  const std::optional<double> at_rest = start_at(trial_, false);
-  if (by_rate && !(at_rest && *at_rest <= *by_rate)) return start_at(v_, true);
-  std::swap(v_, trial_);
-  return at_rest;
+  if (accelerated_) {
+    if (const auto norm = start_at(true)) return norm;
+  }
+  return start_at(false);
 }
 
 /// |r| at the acceleration of the last step, or at none, with contacts as the forces there would have them
 /// where that is better. Each that is found here saves an iteration of Newton's method.
 template <class Real>
-std::optional<double> ImplicitStep<Real>::start_at(Vector& v, bool by_rate) {
-  place(v, by_rate);
-  const std::optional<double> norm = evaluate(v);
-  if (!norm || *norm <= kGood * scale() || !foresee_contacts(v)) return norm;
-  const std::optional<double> foreseen = evaluate(v);
+std::optional<double> ImplicitStep<Real>::start_at(bool by_rate) {
+  place(v_, by_rate);
+  const std::optional<double> norm = evaluate(v_);
+  if (!norm || *norm <= kGood * scale() || !foresee_contacts(v_)) return norm;
+  const std::optional<double> foreseen = evaluate(v_);
   if (foreseen && *foreseen <= *norm) return foreseen;
-  place(v, by_rate);
-  return evaluate(v);
+  place(v_, by_rate);
+  return evaluate(v_);
 }
 
 /// v at the acceleration of the last step, or at none, as far as contacts let it be: those that v would pass,

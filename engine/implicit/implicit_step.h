@@ -14,7 +14,7 @@ namespace repose {
 /// What a solve came to.
 struct ImplicitReport {
   NewtonReport newton;                           ///< with |r| in kg^1/2 m/s
-  std::int64_t unknowns = 0;                     ///< velocity components that were solved for
+  std::int64_t unknowns = 0;                     ///< velocity components that were solved for, with the contacts at the end
   SolveStatus linear = SolveStatus::kConverged;  ///< of the last linear solve that failed, if any did
 };
 
@@ -43,7 +43,8 @@ class ImplicitStep {
   bool has_energy() const;
   double slope(const Vector& step) { return dot(system_, balance_.residual(), step); }
   bool change_contacts(Vector& v);
-  void linearize() { balance_.linearize(); }
+  bool models() const { return balance_.models(); }
+  double linearize(const Vector& v, bool near) { return balance_.linearize(v, near); }
   struct Solved {
     int iterations = 0;
     bool good = false;
@@ -54,15 +55,14 @@ class ImplicitStep {
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
-  /// What is left of a guess as good as this, of the impulses, is no more than what Newton's method makes of
-  /// any other.
+  /// A guess that leaves no more than this share of the impulses has the contacts that it should have.
   static constexpr double kGood = 0.3;
 
   void follow_topology();
   void collect_holds();
   void carry_acceleration();
   std::optional<double> start();
-  std::optional<double> start_at(Vector& v, bool by_rate);
+  std::optional<double> start_at(bool by_rate);
   void place(Vector& v, bool by_rate);
   bool foresee_contacts(Vector& v);
   void publish(const Vector& v);

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-#include "engine/implicit/tangent_system.h"
+#include "engine/implicit/particle_response.h"
 
 namespace repose {
 
@@ -29,44 +29,36 @@ class MomentumBalance {
   /// |r(dv)| in the norm of the inverse mass, kg^1/2 m/s, less what nodes that stick bear; nothing where a
   /// particle would be turned inside out or something is not finite.
   std::optional<double> evaluate(const Vector& dv);
-  /// r of the dv that was evaluated last, less what holds bear, with the friction of Coulomb's regularised law.
+  /// r of the dv that was evaluated last, less what holds bear, with the friction of Coulomb's regularised law;
+  /// after linearize() as the linear model has it there.
   const Vector& residual() const { return residual_; }
   /// The larger of the outer and the inner impulses of the step, in that norm, the least seen in this step. Of
   /// a stiff body inner ones are large far from the solution: what counts is what acts at it.
   double scale() const { return scale_; }
 
-  /// Makes the system the tangent at the dv that was evaluated last.
-  void linearize();
+  /// Whether there are models near dv, rather than at it.
+  bool models() const { return particles_.resolves(); }
+  /// Makes the system the tangent at the dv that was evaluated last, or of a model near it; returns |r| as the
+  /// model has it at that dv.
+  double linearize(const Vector& dv, bool near);
   /// The longest length along step at which no particle is turned inside out, when the dv that was evaluated
   /// last lies `length` along it.
   double reach(const Vector& step, double length);
 
-  std::size_t bytes() const { return residual_.bytes() + at_begin_.bytes() + at_trial_.bytes(); }
+  std::size_t bytes() const { return residual_.bytes() + particles_.bytes(); }
 
  private:
-  /// What a sweep keeps of a chunk: the gradient of v (1/s, by rows) and the trial strain.
-  struct Trial {
-    Real* gradient[kAffineComponents];
-    Real* strain[kStrainComponents];
-  };
-  static constexpr std::size_t kTrialValues = kAffineComponents + kStrainComponents;
   static constexpr double kLeastDeterminant = 0.02;  // for reach(): twice what the kernel refuses
 
-  void gradient_at_begin(std::size_t set, const Chunk<Real>& chunk, Real* (&gradient)[kAffineComponents]);
-  Trial trial_of(std::size_t set, const Chunk<Real>& chunk);
-  void try_strain(std::size_t set, Chunk<Real>& chunk);
-  TangentInput<Real> at_trial(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
-  bool stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
+  double push_scale(const Chunk<Real>& chunk) const;
   std::array<double, 3> finish_residual(std::size_t block, const Real* dv, Real* r);
 
-  const ImplicitPlan<Real>& plan_;
-  bool returns_;  // whether sand yields within the solve
   BlockSweep<Real>& sweep_;
   ContactSet<Real>& contacts_;
   TangentSystem<Real>& system_;
+  ParticleResponse<Real> particles_;
   Vector residual_;
-  AlignedArray<Real> at_begin_, at_trial_;  // per particle: grad v^n; gradient and strain of Trial
-  double scale_ = 0.0;
+  double norm_ = 0.0, scale_ = 0.0;
 };
 
 }  // namespace repose

@@ -96,7 +96,7 @@ void TangentSystem<Real>::Part::precondition(const Vector& r, Vector& z) const {
   switch (system_.preconditioner_) {
     case Preconditioner::kMass:
       kernels().over_mass(nodes, from, to);
-      contacts.soften(block_, to);
+      contacts.precondition(block_, to);
       break;
     case Preconditioner::kBlocks:
       std::copy_n(from, kBlockValues, to);

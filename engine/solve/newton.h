@@ -1,7 +1,10 @@
 // Repose: Newton's method with a line search, for residuals that are only piecewise smooth and not everywhere
-// defined. Linear solves are inexact (Dembo, Eisenstat, Steihaug 1982), with the share
-// eta = min(kLoosest, sqrt(|r| / |r_0|)) of the residual left over: no more is solved for than the next
-// linearisation is worth.
+// defined. Linear solves are inexact (Dembo, Eisenstat, Steihaug 1982): no more is solved for than the tolerance
+// asks, and no less than the next linearisation is worth.
+//
+// A problem may know a better place to be linearised at than v: one near it where its law is less steep. Steps
+// of such a linear model are taken as long as |r| hardly rises; when it does, v itself is the place from then on,
+// for there the step is one of descent.
 //
 // A problem has
 //   std::optional<double> evaluate(const Vector& v)    |r(v)|; nothing where r is not defined
@@ -9,8 +12,10 @@
 //   bool has_energy()                                  whether r is the gradient of an energy
 //   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
-//   void linearize()                                   at the v that was evaluated last
-//   solve(double share, Vector& step)                  step = -A^-1 r(v), |A step + r| <= share |r|
+//   bool models()                                      whether it knows a place near v to be linearised at
+//   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns |r| at v
+//                                                      of the linear model
+//   solve(double share, Vector& step)                  step = -A^-1 r(v) of the model, |A step + r| <= share |r|
 //   double reach(const Vector& step, double length)    the longest length along step at which r is defined,
 //                                                      when at `length`, evaluated last, it is not
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step, or near
@@ -67,24 +72,32 @@ class Newton {
   /// cannot keep the method going round for ever.
   NewtonReport solve(std::optional<double> norm) {
     if (!norm) return end(NewtonEnd::kUndefined);
+    near_ = problem_.models();
     report_.first = report_.last = *norm;
     // A guess may be right but for contacts that pull.
     if (report_.last <= tolerance() && !change_contacts()) return end(NewtonEnd::kUndefined);
     while (report_.history.push_back(report_.last), report_.last > tolerance()) {
       if (report_.iterations == stop_.iterations) return end(NewtonEnd::kIterations);
       ++report_.iterations;
-      if (!direction()) return end(NewtonEnd::kUnsolved);
-      if (!search()) return end(NewtonEnd::kNoDescent);
-      if (2 * report_.iterations <= stop_.iterations && !change_contacts()) return end(NewtonEnd::kUndefined);
+      const std::optional<NewtonEnd> failed = !direction() ? NewtonEnd::kUnsolved
+                                              : !search()  ? NewtonEnd::kNoDescent
+                                                           : std::optional<NewtonEnd>{};
+      if (failed && !near_) return end(*failed);
+      if (failed) problem_.evaluate(v_);  // the last was a length that was refused
+      if (!failed && early() && !change_contacts()) return end(NewtonEnd::kUndefined);
+      near_ = near_ && !failed && early();
     }
     return end(NewtonEnd::kConverged);
   }
 
  private:
-  static constexpr double kLoosest = 0.2;   // looser solves are worth less than they save
+  static constexpr double kTightest = 0.05, kLoosest = 0.5;  // shares of |r| that solves leave
   static constexpr double kDescent = 1e-4;  // share of the promised descent that a length must make good
+  static constexpr double kRise = 1.5;      // of |r|, along a model near v
   static constexpr double kNearly = 10.0;   // tolerances
-  static constexpr int kLengths = 12;
+  static constexpr int kLengths = 12, kLengthsNear = 3;
+
+  bool early() const { return 2 * report_.iterations <= stop_.iterations; }
 
   NewtonReport end(NewtonEnd how) {
     const bool found = how == NewtonEnd::kNoDescent || how == NewtonEnd::kUnsolved;
@@ -106,9 +119,8 @@ class Newton {
   }
 
   bool direction() {
-    problem_.linearize();
-    const double eta = std::min(kLoosest, std::sqrt(report_.last / report_.first));
-    const auto solved = problem_.solve(std::max(eta, 0.3 * tolerance() / report_.last), step_);
+    const double left = problem_.linearize(v_, near_);
+    const auto solved = problem_.solve(std::clamp(0.3 * tolerance() / left, kTightest, kLoosest), step_);
     report_.linear_iterations += solved.iterations;
     return solved.usable();
   }
@@ -118,7 +130,7 @@ class Newton {
   bool search() {
     const double before = problem_.has_energy() ? problem_.slope(step_) : 0.0;
     double length = 1.0;
-    for (int k = 0; k < kLengths; ++k) {
+    for (int k = 0; k < (near_ ? kLengthsNear : kLengths); ++k) {
       problem_.take(v_, length, step_, trial_);
       const std::optional<double> norm = problem_.evaluate(trial_);
       if (norm && descends(*norm, length, before)) {
@@ -134,6 +146,7 @@ class Newton {
   }
 
   bool descends(double norm, double length, double before) {
+    if (near_) return norm <= kRise * report_.last;
     if (norm <= (1.0 - kDescent * length) * report_.last) return true;
     return before < 0.0 && problem_.slope(step_) <= (1.0 - 2.0 * kDescent) * -before;
   }
@@ -142,6 +155,7 @@ class Newton {
   Vector &v_, &step_, &trial_;
   NewtonStop stop_;
   NewtonReport report_;
+  bool near_ = false;  // whether to linearise near v
 };
 
 }  // namespace repose

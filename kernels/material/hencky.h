@@ -86,6 +86,14 @@ REPOSE_INLINE Sym3<N> hencky_stress(const HenckyConstants<Scalar<N>>& c, const S
   return plus_identity(N(c.mu + c.mu) * eps, N(c.lambda) * trace(eps));
 }
 
+/// The strain whose stress is tau.
+template <class N>
+REPOSE_INLINE Sym3<N> hencky_strain(const HenckyConstants<Scalar<N>>& c, const Sym3<N>& tau) {
+  using T = Scalar<N>;
+  const T per_twice_mu = T(1) / (c.mu + c.mu), bulk = T(3) * c.lambda + c.mu + c.mu;
+  return plus_identity(N(per_twice_mu) * tau, N(-c.lambda * per_twice_mu / bulk) * trace(tau));
+}
+
 template <class N>
 REPOSE_INLINE Response<N> hencky_response(const HenckyConstants<Scalar<N>>& c, const N (&eps)[3]) {
   Response<N> r;

@@ -137,6 +137,9 @@ struct TangentInput {
   Real* tangent;                         ///< out, room for whole groups
 };
 
+/// What a trial strain weighs against an elastic strain that was foretold (kernels/pass/stiffness.cpp).
+inline constexpr double kTrialWeight = 0.2;
+
 /// Pushes of particles on nodes: node i receives -scale S g_i, g_i the gradient of its weight.
 template <class Real>
 struct PushInput {
@@ -164,6 +167,9 @@ struct MaterialKernels {
   /// As project, by numbers per particle; null where project is.
   void (*project_shaped)(const MaterialInput<Real>&, const YieldInput<Real>&);
   void (*linearize[kTangentModes])(const TangentInput<Real>&);
+  /// strain <- the point of the law between the trial strain and S as a linear model foretold it; offset <- the
+  /// change of dt grad v from that point to the trial state. Null where project is.
+  void (*resolve)(const TangentInput<Real>&, const Real* const foretold[9], Real* const offset[9]);
   /// stress <- that of the unilateral energy, of the trial strain; null where project is.
   void (*fading_stress)(const MaterialInput<Real>&, const UnilateralConstants<Real>&);
 };

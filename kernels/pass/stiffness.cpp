@@ -160,6 +160,64 @@ void linearize(const TangentInput<T>& in) {
   }
 }
 
+/// Where the next linear model is made (docs/math.md, 45): with eps the trial strain and e the elastic strain of
+/// the stress that was foretold, at the eps' of
+///   Z(eps') + theta eps' = e + theta eps,
+/// which has Z(eps') = Z((e + theta eps) / (1 + theta)), for a return map keeps the direction of the deviator,
+/// and in the cone the trace too.
+template <class Material, class T>
+void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const offset[9]) {
+  using P = Pack<T>;
+  static constexpr int kSymmetric[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+  constexpr T kTheta = T(kTrialWeight);
+  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.material.constants);
+  const P theta(kTheta), per_theta(T(1) / kTheta), share(T(1) / (T(1) + kTheta)), half(T(0.5));
+  for (const auto [first, lanes] : packs<T>(in.material.count)) {
+    const auto entry = [&](int k) HWY_ATTR { return P::load_first(in.material.strain[k] + first, lanes); };
+    const Sym3<P> trial{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+    const Mat3<P> map = load_map<T>(in.material.gradient, in.material.dt, first, lanes);
+    const Mat3<P> s = load_mat3<T>(foretold, first, lanes);
+    const auto product = [&](int r, int c) HWY_ATTR {
+      return fma(s.m[r][0], map.m[c][0], fma(s.m[r][1], map.m[c][1], s.m[r][2] * map.m[c][2]));
+    };
+    P tau[6];
+    HWY_UNROLL(6)
+    for (int k = 0; k < 6; ++k) {
+      const int r = kSymmetric[k][0], c = kSymmetric[k][1];
+      tau[k] = half * (product(r, c) + product(c, r));
+    }
+    const Sym3<P> stress{tau[0], tau[1], tau[2], tau[3], tau[4], tau[5]};
+    const Sym3<P> sum = fma(theta, trial, hencky_strain(constants.elastic, stress));
+    Sym3<P> returned;
+    if (in.surface.cone == nullptr) {
+      returned = Material::project(constants, share * sum);
+    } else {
+      const auto number = [first = first, lanes = lanes](const T* from)
+                              HWY_ATTR { return P::load_first(from + first, lanes); };
+      returned = Material::project_shaped(share * sum, number(in.surface.cone), number(in.surface.cohesion),
+                                          number(in.surface.dilatancy))
+                     .strain;
+    }
+    Sym3<P> point = per_theta * fma(P(T(-1)), returned, sum);
+    // A cone looks the same from everywhere along a line through its tip: strains need not leave what exp takes.
+    const P length = sqrt(square_norm(point));
+    point = (P(T(1)) / max(length, P(T(1)))) * point;
+    const Sym3<P> apart = fma(P(T(-1)), point, trial);
+    const P d[3][3] = {{apart.xx, apart.xy, apart.xz}, {apart.xy, apart.yy, apart.yz}, {apart.xz, apart.yz, apart.zz}};
+    Mat3<P> change;
+    HWY_UNROLL(3)
+    for (int r = 0; r < 3; ++r) {
+      HWY_UNROLL(3)
+      for (int c = 0; c < 3; ++c)
+        change.m[r][c] = fma(d[r][0], map.m[0][c], fma(d[r][1], map.m[1][c], d[r][2] * map.m[2][c]));
+    }
+    store_mat3(change, offset, first, lanes);
+    const P all[6] = {point.xx, point.xy, point.xz, point.yy, point.yz, point.zz};
+    HWY_UNROLL(6)
+    for (int k = 0; k < 6; ++k) all[k].store_first(in.material.strain[k] + first, lanes);
+  }
+}
+
 /// stress <- that of the unilateral energy at the trial strain
 template <class Material, class T>
 void fading_stress(const MaterialInput<T>& in, const UnilateralConstants<T>& unilateral) {
@@ -235,7 +293,11 @@ void fill_material_tangents(MaterialKernels<T>& table) {
   table.linearize[2] = linearize<Material, TangentMode::kLagged, T>;
   table.linearize[3] = linearize<Material, TangentMode::kUnilateral, T>;
   table.fading_stress = nullptr;
-  if constexpr (Material::Parameters::kYields) table.fading_stress = fading_stress<Material, T>;
+  table.resolve = nullptr;
+  if constexpr (Material::Parameters::kYields) {
+    table.fading_stress = fading_stress<Material, T>;
+    table.resolve = resolve<Material, T>;
+  }
 }
 
 template <class T>

@@ -151,7 +151,7 @@ TEST(ContactSet, TangentOfFriction_IsItsDerivative) {
     // (m + D)^-1 m (m x + D x) / m = x
     double z[kBlockValues] = {};
     for (std::size_t c = 0; c < 3; ++c) z[kAt + c] = x[kAt + c] + y[kAt + c] / kMass;
-    node.contacts.soften(0, z);
+    node.contacts.precondition(0, z);
     EXPECT_NEAR((Vec3(Eigen::Map<const Vec3>(z + kAt)) - d).norm(), 0.0, 1e-10 * d.norm());
   }
 }

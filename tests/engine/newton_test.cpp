@@ -23,6 +23,8 @@ struct DenseProblem {
   std::function<std::optional<Vector>(const Vector&)> residual;
   std::function<Eigen::MatrixXd(const Vector&)> derivative;
   std::function<double(const Vector&, const Vector&, double)> longest;
+  /// r and its derivative as a model near v has them; none: there is no such place.
+  std::function<std::pair<Vector, Eigen::MatrixXd>(const Vector&)> model;
   bool energy = false;
   bool linear_solver_fails = false;
   double left_over = 0.0;                                   // share of the residual that linear solves leave
@@ -30,8 +32,10 @@ struct DenseProblem {
   double against = 1.0;
 
   bool held = false;
-  int evaluations = 0;
+  int evaluations = 0, modelled = 0;
   Vector evaluated, r;
+  Vector left;  // r of the linear system
+  Eigen::MatrixXd a;
 
   std::optional<double> evaluate(const Vector& v) {
     ++evaluations;
@@ -52,15 +56,23 @@ struct DenseProblem {
     if (held) v[0] = lower;
     return true;
   }
-  void linearize() {}
+  bool models() const { return static_cast<bool>(model); }
+  double linearize(const Vector& v, bool near) {
+    left = r;
+    a = derivative(evaluated);
+    if (near && model) {
+      ++modelled;
+      std::tie(left, a) = model(v);
+    }
+    return left.norm();
+  }
   Solved solve(double, Vector& step) {
-    Eigen::MatrixXd a = derivative(evaluated);
     if (held) {
       a.row(0).setZero();
       a.col(0).setZero();
       a(0, 0) = 1.0;
     }
-    step = -(1.0 - left_over) * a.fullPivLu().solve(r);
+    step = -(1.0 - left_over) * a.fullPivLu().solve(left);
     return {1, !linear_solver_fails};
   }
   double reach(const Vector& step, double length) { return longest(evaluated, step, length); }
@@ -176,6 +188,54 @@ TEST(Newton, WithAnEnergy_GoesWhereOnlyTheEnergyFalls) {
   problem.energy = false;
   const auto without = solve_from(problem, Eigen::Vector2d(1.0, 0.0), 1e-10).report.history;
   for (std::size_t k = 0; k + 1 < without.size(); ++k) EXPECT_LT(without[k + 1], without[k]);
+}
+
+// A body that meets a wall of stiffness 1e6 at 0: seen from -1 there is no wall, and a step from there has to be
+// shortened to a millionth. A model that foresees the wall needs one step.
+TEST(Newton, WithAModelNearV_StepsAlongIt) {
+  DenseProblem problem;
+  problem.residual = [](const Eigen::VectorXd& v) { return vector1(v[0] - 1.0 + 1e6 * std::max(v[0], 0.0)); };
+  problem.derivative = [](const Eigen::VectorXd& v) { return matrix1(v[0] > 0.0 ? 1e6 + 1.0 : 1.0); };
+  const Outcome without = solve_from(problem, vector1(-1.0), 1e-9);
+  EXPECT_GT(without.report.shortened, 5);
+  problem.model = [](const Eigen::VectorXd& v) {
+    return std::pair(vector1(v[0] - 1.0 + 1e6 * v[0]), matrix1(1e6 + 1.0));
+  };
+  const Outcome run = solve_from(problem, vector1(-1.0), 1e-9);
+  EXPECT_EQ(run.report.end, NewtonEnd::kConverged);
+  EXPECT_EQ(run.report.iterations, 1);
+  EXPECT_EQ(run.report.shortened, 0);
+  EXPECT_NEAR(run.v[0], 1e-6, 1e-11);
+}
+
+// A model may be as wrong as it likes: from where |r| would rise along it, steps are those at v.
+TEST(Newton, WithAModelThatLeadsAstray_GoesOnAtV) {
+  DenseProblem problem;
+  problem.residual = [](const Eigen::VectorXd& v) { return v; };
+  problem.derivative = [](const Eigen::VectorXd&) { return matrix1(1.0); };
+  problem.model = [](const Eigen::VectorXd& v) { return std::pair(v, matrix1(-1.0)); };
+  problem.left_over = 0.5;
+  const Outcome run = solve_from(problem, vector1(1.0), 0.2);
+  EXPECT_EQ(run.report.end, NewtonEnd::kConverged);
+  EXPECT_EQ(problem.modelled, 1);
+  EXPECT_EQ(run.report.iterations, 4);  // one astray, then 1/2, 1/4, 1/8
+  EXPECT_EQ(run.report.shortened, 3);
+  EXPECT_DOUBLE_EQ(run.v[0], 0.125);
+  EXPECT_EQ(problem.evaluated[0], run.v[0]);
+}
+
+// So it is with a model that no linear solver gets anywhere with.
+TEST(Newton, WithAModelThatIsNotSolved_GoesOnAtV) {
+  DenseProblem problem;
+  problem.residual = [](const Eigen::VectorXd& v) { return v; };
+  problem.derivative = [&problem](const Eigen::VectorXd&) {
+    problem.linear_solver_fails = problem.modelled == 0;
+    return matrix1(1.0);
+  };
+  problem.model = [](const Eigen::VectorXd& v) { return std::pair(v, matrix1(-1.0)); };
+  const Outcome run = solve_from(problem, vector1(1.0), 1e-9);
+  EXPECT_EQ(run.report.end, NewtonEnd::kConverged);
+  EXPECT_EQ(run.report.iterations, 2);
 }
 
 TEST(Newton, WithAOneSidedConstraint_HoldsWhatWouldPassIt) {

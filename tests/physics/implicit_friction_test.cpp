@@ -85,5 +85,51 @@ TEST(ImplicitFriction, BlockOnASlope_SlidesAboveTheAngleOfFrictionAlone) {
   }
 }
 
+// A floor that goes away under it takes the block along, at mu g, until both are as fast.
+TEST(ImplicitFriction, BlockOnAFloorThatMoves_IsTakenAlong) {
+  for (const Case& each : kCases) {
+    std::vector<std::string> overrides = each.overrides;
+    overrides.push_back(
+        R"(colliders[0].motion={"keys": [{"time": 0}, {"time": 10, "translation": [10, 0, 0]}]})");
+    const Reading early = read_after(0.05, each.multiple, overrides);
+    const Reading late = read_after(0.25, each.multiple, overrides);
+    const double impulse = 0.3 * kGravity * (late.time - early.time);
+    report(name("taken_along_", each), (late.velocity - early.velocity) / impulse - 1.0);
+    EXPECT_NEAR(late.velocity - early.velocity, impulse, each.share * impulse) << each.multiple;
+    EXPECT_NEAR(read_after(0.5, each.multiple, overrides).velocity, 1.0, 1e-3) << each.multiple;
+  }
+}
+
+/// The same block, a cube.
+std::string cube() {
+  std::string text = kBlock;
+  text.replace(text.find(R"(, "plane_strain": "z")"), std::string(R"(, "plane_strain": "z")").size(), "");
+  text.replace(text.find("dx / 2\", -1]"), std::string("dx / 2\", -1]").size(), "dx / 2\", 0]");
+  text.replace(text.find("8.5 * dx\", 1]"), std::string("8.5 * dx\", 1]").size(), "8.5 * dx\", \"= 8 * dx\"]");
+  return text;
+}
+
+// Friction is against the way that the block slides, and turns it nowhere.
+TEST(ImplicitFriction, CubeThatSlidesAskew_LosesMuGPerSecondAlongItsWay) {
+  for (const char* mode : {"exact", "projected", "lagged"}) {
+    const auto simulation = simulate(
+        in_long_steps(cube(), 16.0, {std::string("implicit.mode=") + mode, "bodies[0].velocity=[0.6, 0, 0.8]"}), 2);
+    Diagnostics early;
+    double begin = 0.0;
+    while (simulation->counters().time < 0.15) {
+      const auto step = simulation->step();
+      ASSERT_TRUE(step) << step.error().text();
+      if (begin > 0.0 || simulation->counters().time < 0.05) continue;
+      begin = simulation->counters().time;
+      early = simulation->diagnose();
+    }
+    const Diagnostics late = simulation->diagnose();
+    const double impulse = 0.3 * kGravity * (simulation->counters().time - begin) * early.mass;
+    report(std::string("askew_") + mode, (early.momentum - late.momentum).norm() / impulse - 1.0);
+    EXPECT_NEAR(early.momentum[0] - late.momentum[0], 0.6 * impulse, 0.01 * impulse) << mode;
+    EXPECT_NEAR(early.momentum[2] - late.momentum[2], 0.8 * impulse, 0.01 * impulse) << mode;
+  }
+}
+
 }  // namespace
 }  // namespace repose
