@@ -44,8 +44,8 @@ class ContactSet {
   void linearize(std::size_t block, const Real* nodes);
   /// y += D x, of an x that is zero along what is held.
   void add_friction(std::size_t block, const Real* x, Real* y) const;
-  /// z over mass as contacts have it: z = Q (m + D)^-1 m z, Q what takes all that lies along directions that are
-  /// held.
+  /// z over mass as contacts have it: z = Q (m + D)^-1 m z, Q what takes all that lies along directions that
+  /// are held.
   void precondition(std::size_t block, Real* z) const;
   /// Calls visit(node, D) for the nodes that rub.
   template <class Visit>

@@ -13,8 +13,8 @@ namespace repose {
 
 /// What a solve came to.
 struct ImplicitReport {
-  NewtonReport newton;                           ///< with |r| in kg^1/2 m/s
-  std::int64_t unknowns = 0;                     ///< velocity components that were solved for, with the contacts at the end
+  NewtonReport newton;        ///< with |r| in kg^1/2 m/s
+  std::int64_t unknowns = 0;  ///< velocity components that were solved for, with the contacts at the end
   SolveStatus linear = SolveStatus::kConverged;  ///< of the last linear solve that failed, if any did
 };
 

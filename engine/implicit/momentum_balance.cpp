@@ -35,10 +35,9 @@ template <class Real>
 void MomentumBalance<Real>::begin() {
   scale_ = std::numeric_limits<double>::infinity();
   particles_.begin();
-  sweep_.over_particles({.from = &sweep_.state().before_forces},
-                        [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>&) {
-                          particles_.keep_begin(set, chunk);
-                        });
+  sweep_.over_particles(
+      {.from = &sweep_.state().before_forces},
+      [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>&) { particles_.keep_begin(set, chunk); });
 }
 
 /// Of S to impulses.
@@ -52,7 +51,8 @@ std::optional<double> MomentumBalance<Real>::evaluate(const Vector& dv) {
   std::atomic<bool> sound = true;
   sweep_.over_particles({.from = &dv, .to = &residual_},
                         [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
-                          if (!particles_.stress(set, chunk, own)) sound.store(false, std::memory_order_relaxed);
+                          if (!particles_.stress(set, chunk, own))
+                            sound.store(false, std::memory_order_relaxed);
                           sweep_.push(chunk, own, push_scale(chunk));
                         });
   if (!sound) return std::nullopt;
@@ -105,8 +105,8 @@ double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
   particles_.end_linearize();
   double norm = norm_;
   if (resolves) {
-    const auto [sum, outer, inner] =
-        sweep_.sums_of_blocks([&](std::size_t b) { return finish_residual(b, dv.block(b), residual_.block(b)); });
+    const auto [sum, outer, inner] = sweep_.sums_of_blocks(
+        [&](std::size_t b) { return finish_residual(b, dv.block(b), residual_.block(b)); });
     norm = std::sqrt(sum);
   }
   sweep_.for_each_block([&](std::size_t b) { contacts_.linearize(b, sweep_.state().nodes.block(b)); });

@@ -171,7 +171,8 @@ bool ParticleResponse<Real>::stress(std::size_t set, Chunk<Real>& chunk, Implici
   return stress_of(set, at_trial(set, chunk, own), matrix);
 }
 
-/// Puts the strain of `in` where the next model is to be made, and into `ahead` how far dt grad v is from there.
+/// Puts the strain of `in` where the next model is to be made, and into `ahead` how far dt grad v is from
+/// there.
 template <class Real>
 void ParticleResponse<Real>::resolve(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own,
                                      const TangentInput<Real>& in, Real* const (&ahead)[kAffineComponents]) {

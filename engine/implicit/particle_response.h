@@ -1,6 +1,6 @@
-// Repose: how particles answer velocities within an implicit step: their stress, and the linear model of it that
-// a linear solve works with. Passes over a chunk for the sweeps of engine/implicit/momentum_balance.h; a matrix
-// S is for the push that follows.
+// Repose: how particles answer velocities within an implicit step: their stress, and the linear model of it
+// that a linear solve works with. Passes over a chunk for the sweeps of engine/implicit/momentum_balance.h; a
+// matrix S is for the push that follows.
 //
 // The model of sand is not made where its velocities have put it (docs/math.md, 45). Stiff sand whose gradient
 // is off by a thousandth is taken for open, or for sheared far beyond the cone, and the tangent there says
@@ -30,7 +30,8 @@ class ParticleResponse {
 
   /// Keeps grad v^n, of the velocities in the arena.
   void keep_begin(std::size_t set, const Chunk<Real>& chunk);
-  /// S at the change of velocity in the arena, in own.matrix; false where a particle would be turned inside out.
+  /// S at the change of velocity in the arena, in own.matrix; false where a particle would be turned inside
+  /// out.
   bool stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
   /// Makes the tangents of the system those at the velocities of the last stress(), or `near` them. If
   /// resolves(), own.matrix is S at those velocities as the linear model has it.

@@ -1,10 +1,10 @@
 // Repose: Newton's method with a line search, for residuals that are only piecewise smooth and not everywhere
-// defined. Linear solves are inexact (Dembo, Eisenstat, Steihaug 1982): no more is solved for than the tolerance
-// asks, and no less than the next linearisation is worth.
+// defined. Linear solves are inexact (Dembo, Eisenstat, Steihaug 1982): no more is solved for than the
+// tolerance asks, and no less than the next linearisation is worth.
 //
 // A problem may know a better place to be linearised at than v: one near it where its law is less steep. Steps
-// of such a linear model are taken as long as |r| hardly rises; when it does, v itself is the place from then on,
-// for there the step is one of descent.
+// of such a linear model are taken as long as |r| hardly rises; when it does, v itself is the place from then
+// on, for there the step is one of descent.
 //
 // A problem has
 //   std::optional<double> evaluate(const Vector& v)    |r(v)|; nothing where r is not defined
@@ -13,10 +13,11 @@
 //   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
 //   bool models()                                      whether it knows a place near v to be linearised at
-//   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns |r| at v
+//   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns |r|
+//   at v
 //                                                      of the linear model
-//   solve(double share, Vector& step)                  step = -A^-1 r(v) of the model, |A step + r| <= share |r|
-//   double reach(const Vector& step, double length)    the longest length along step at which r is defined,
+//   solve(double share, Vector& step)                  step = -A^-1 r(v) of the model, |A step + r| <= share
+//   |r| double reach(const Vector& step, double length)    the longest length along step at which r is defined,
 //                                                      when at `length`, evaluated last, it is not
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step, or near
 //                                                                                it, as constraints have it
@@ -91,7 +92,9 @@ class Newton {
   }
 
  private:
-  static constexpr double kTightest = 0.05, kLoosest = 0.5;  // shares of |r| that solves leave
+  // Shares of |r| that linear solves leave. Hard is what begins with more than half of what acts, or has an
+  // iteration that leaves more than half of |r|.
+  static constexpr double kLeft = 0.2, kLeftWhenHard = 0.05, kMostLeft = 0.5, kHard = 0.5;
   static constexpr double kDescent = 1e-4;  // share of the promised descent that a length must make good
   static constexpr double kRise = 1.5;      // of |r|, along a model near v
   static constexpr double kNearly = 10.0;   // tolerances
@@ -120,7 +123,11 @@ class Newton {
 
   bool direction() {
     const double left = problem_.linearize(v_, near_);
-    const auto solved = problem_.solve(std::clamp(0.3 * tolerance() / left, kTightest, kLoosest), step_);
+    const auto& norms = report_.history;
+    hard_ = hard_ || left > kHard * problem_.scale() ||
+            (norms.size() > 1 && norms.back() > kHard * norms[norms.size() - 2]);
+    const double share = std::clamp(0.3 * tolerance() / left, hard_ ? kLeftWhenHard : kLeft, kMostLeft);
+    const auto solved = problem_.solve(share, step_);
     report_.linear_iterations += solved.iterations;
     return solved.usable();
   }
@@ -155,6 +162,7 @@ class Newton {
   Vector &v_, &step_, &trial_;
   NewtonStop stop_;
   NewtonReport report_;
+  bool hard_ = false;
   bool near_ = false;  // whether to linearise near v
 };
 

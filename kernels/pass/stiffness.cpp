@@ -160,8 +160,8 @@ void linearize(const TangentInput<T>& in) {
   }
 }
 
-/// Where the next linear model is made (docs/math.md, 45): with eps the trial strain and e the elastic strain of
-/// the stress that was foretold, at the eps' of
+/// Where the next linear model is made (docs/math.md, 45): with eps the trial strain and e the elastic strain
+/// of the stress that was foretold, at the eps' of
 ///   Z(eps') + theta eps' = e + theta eps,
 /// which has Z(eps') = Z((e + theta eps) / (1 + theta)), for a return map keeps the direction of the deviator,
 /// and in the cone the trace too.
@@ -199,11 +199,13 @@ void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const off
                      .strain;
     }
     Sym3<P> point = per_theta * fma(P(T(-1)), returned, sum);
-    // A cone looks the same from everywhere along a line through its tip: strains need not leave what exp takes.
+    // A cone looks the same from everywhere along a line through its tip: strains need not leave what exp
+    // takes.
     const P length = sqrt(square_norm(point));
     point = (P(T(1)) / max(length, P(T(1)))) * point;
     const Sym3<P> apart = fma(P(T(-1)), point, trial);
-    const P d[3][3] = {{apart.xx, apart.xy, apart.xz}, {apart.xy, apart.yy, apart.yz}, {apart.xz, apart.yz, apart.zz}};
+    const P d[3][3] = {
+        {apart.xx, apart.xy, apart.xz}, {apart.xy, apart.yy, apart.yz}, {apart.xz, apart.yz, apart.zz}};
     Mat3<P> change;
     HWY_UNROLL(3)
     for (int r = 0; r < 3; ++r) {

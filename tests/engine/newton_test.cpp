@@ -190,8 +190,8 @@ TEST(Newton, WithAnEnergy_GoesWhereOnlyTheEnergyFalls) {
   for (std::size_t k = 0; k + 1 < without.size(); ++k) EXPECT_LT(without[k + 1], without[k]);
 }
 
-// A body that meets a wall of stiffness 1e6 at 0: seen from -1 there is no wall, and a step from there has to be
-// shortened to a millionth. A model that foresees the wall needs one step.
+// A body that meets a wall of stiffness 1e6 at 0: seen from -1 there is no wall, and a step from there has to
+// be shortened to a millionth. A model that foresees the wall needs one step.
 TEST(Newton, WithAModelNearV_StepsAlongIt) {
   DenseProblem problem;
   problem.residual = [](const Eigen::VectorXd& v) { return vector1(v[0] - 1.0 + 1e6 * std::max(v[0], 0.0)); };

@@ -48,7 +48,7 @@ struct Sand {
   }
   YieldInput<double> surface() {
     if (cone.empty()) return {};
-    return {cone.data(),  cohesion.data(),         dilatancy.data(),
+    return {cone.data(),  cohesion.data(),       dilatancy.data(),
             spare.data(), spare.data() + kCount, spare.data() + 2 * kCount};
   }
   std::array<std::vector<double>, 6> returned(std::array<std::vector<double>, 6> strains) {
@@ -80,7 +80,8 @@ struct Sand {
   void foretell(const std::array<std::vector<double>, 6>& elastic) {
     for (std::size_t p = 0; p < kCount; ++p) {
       const Mat3d e = matrix(elastic, p);
-      const Mat3d tau = 2.0 * constants.elastic.mu * e + constants.elastic.lambda * e.trace() * Mat3d::Identity();
+      const Mat3d tau =
+          2.0 * constants.elastic.mu * e + constants.elastic.lambda * e.trace() * Mat3d::Identity();
       const Mat3d s = tau * map(p).inverse().transpose();
       for (int k = 0; k < 9; ++k) foretold[static_cast<std::size_t>(k)][p] = s(k / 3, k % 3);
     }

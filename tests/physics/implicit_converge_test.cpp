@@ -51,8 +51,8 @@ TEST(ImplicitConverge, Hourglass_IsSolvedAtOnce) {
 
 // Sand a hundred times as stiff, in steps of fifty: linearised where its velocities put it, it takes 8.7.
 TEST(ImplicitConverge, StiffColumn_IsSolvedInAtMostEightIterations) {
-  const auto simulation =
-      simulate(in_long_steps(kColumn, 50.0, {"implicit.mode=exact", "materials.sand.youngs_modulus=3.537e7"}), 1);
+  const auto simulation = simulate(
+      in_long_steps(kColumn, 50.0, {"implicit.mode=exact", "materials.sand.youngs_modulus=3.537e7"}), 1);
   const Ride figures = ride(*simulation, 0.4, 300);
   report("stiff_column_50", figures);
   EXPECT_FALSE(figures.refused);

@@ -96,7 +96,8 @@ TEST(ImplicitFriction, BlockOnAFloorThatMoves_IsTakenAlong) {
     const double impulse = 0.3 * kGravity * (late.time - early.time);
     report(name("taken_along_", each), (late.velocity - early.velocity) / impulse - 1.0);
     EXPECT_NEAR(late.velocity - early.velocity, impulse, each.share * impulse) << each.multiple;
-    EXPECT_NEAR(read_after(0.5, each.multiple, overrides).velocity, 1.0, 1e-3) << each.multiple;
+    // It sways where it sticks.
+    EXPECT_NEAR(read_after(0.5, each.multiple, overrides).velocity, 1.0, 5e-3) << each.multiple;
   }
 }
 
@@ -113,7 +114,8 @@ std::string cube() {
 TEST(ImplicitFriction, CubeThatSlidesAskew_LosesMuGPerSecondAlongItsWay) {
   for (const char* mode : {"exact", "projected", "lagged"}) {
     const auto simulation = simulate(
-        in_long_steps(cube(), 16.0, {std::string("implicit.mode=") + mode, "bodies[0].velocity=[0.6, 0, 0.8]"}), 2);
+        in_long_steps(cube(), 16.0, {std::string("implicit.mode=") + mode, "bodies[0].velocity=[0.6, 0, 0.8]"}),
+        2);
     Diagnostics early;
     double begin = 0.0;
     while (simulation->counters().time < 0.15) {
