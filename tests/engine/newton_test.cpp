@@ -213,7 +213,7 @@ TEST(Newton, WithAModelThatLeadsAstray_GoesOnAtV) {
   DenseProblem problem;
   problem.residual = [](const Eigen::VectorXd& v) { return v; };
   problem.derivative = [](const Eigen::VectorXd&) { return matrix1(1.0); };
-  problem.model = [](const Eigen::VectorXd& v) { return std::pair(v, matrix1(-1.0)); };
+  problem.model = [](const Eigen::VectorXd& v) { return std::pair(v, matrix1(-0.1)); };
   problem.left_over = 0.5;
   const Outcome run = solve_from(problem, vector1(1.0), 0.2);
   EXPECT_EQ(run.report.end, NewtonEnd::kConverged);
