@@ -93,10 +93,9 @@ class Newton {
 
  private:
   // Shares of |r| that linear solves leave. Hard is what begins with more than half of what acts, or has an
-  // iteration that leaves more than half of |r|.
+  // iteration that leaves more than half of |r|; not where an energy tells that a step is worth having.
   static constexpr double kLeft = 0.2, kLeftWhenHard = 0.05, kMostLeft = 0.5, kHard = 0.5;
   static constexpr double kDescent = 1e-4;  // share of the promised descent that a length must make good
-  static constexpr double kRise = 1.5;      // of |r|, along a model near v
   static constexpr double kNearly = 10.0;   // tolerances
   static constexpr int kLengths = 12, kLengthsNear = 3;
 
@@ -124,8 +123,8 @@ class Newton {
   bool direction() {
     const double left = problem_.linearize(v_, near_);
     const auto& norms = report_.history;
-    hard_ = hard_ || left > kHard * problem_.scale() ||
-            (norms.size() > 1 && norms.back() > kHard * norms[norms.size() - 2]);
+    const bool slow = norms.size() > 1 && norms.back() > kHard * norms[norms.size() - 2];
+    hard_ = hard_ || (!problem_.has_energy() && (slow || left > kHard * problem_.scale()));
     const double share = std::clamp(0.3 * tolerance() / left, hard_ ? kLeftWhenHard : kLeft, kMostLeft);
     const auto solved = problem_.solve(share, step_);
     report_.linear_iterations += solved.iterations;
@@ -153,7 +152,7 @@ class Newton {
   }
 
   bool descends(double norm, double length, double before) {
-    if (near_) return norm <= kRise * report_.last;
+    if (near_) return norm <= report_.last;
     if (norm <= (1.0 - kDescent * length) * report_.last) return true;
     return before < 0.0 && problem_.slope(step_) <= (1.0 - 2.0 * kDescent) * -before;
   }
