@@ -93,7 +93,7 @@ class Newton {
 
  private:
   // Shares of |r| that linear solves leave. Hard is what begins with more than half of what acts, or has an
-  // iteration that leaves more than half of |r|; not where an energy tells that a step is worth having.
+  // iteration that leaves more than half of |r|.
   static constexpr double kLeft = 0.2, kLeftWhenHard = 0.05, kMostLeft = 0.5, kHard = 0.5;
   static constexpr double kDescent = 1e-4;  // share of the promised descent that a length must make good
   static constexpr double kNearly = 10.0;   // tolerances
@@ -124,7 +124,7 @@ class Newton {
     const double left = problem_.linearize(v_, near_);
     const auto& norms = report_.history;
     const bool slow = norms.size() > 1 && norms.back() > kHard * norms[norms.size() - 2];
-    hard_ = hard_ || (!problem_.has_energy() && (slow || left > kHard * problem_.scale()));
+    hard_ = hard_ || slow || left > kHard * problem_.scale();
     const double share = std::clamp(0.3 * tolerance() / left, hard_ ? kLeftWhenHard : kLeft, kMostLeft);
     const auto solved = problem_.solve(share, step_);
     report_.linear_iterations += solved.iterations;
