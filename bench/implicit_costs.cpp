@@ -66,10 +66,10 @@ Result<double> time_steps(const ImplicitCostArguments& arguments, double youngs_
   while (state.counters.time < arguments.start) {
     if (auto done = advance(small, state); !done) return done.error();
   }
-  state.acceleration.on = true;
+  state.last_motion.on = true;
   Stepper<float> large(std::move(solving->plan), 1);
   large.follow(state);
-  if (auto first = advance(large, state); !first) return first.error();  // it knows no rate to begin from
+  if (auto first = advance(large, state); !first) return first.error();  // it knows no motion to begin from
   double made = 0.0, seconds = 0.0;
   const double start = processor_time();
   for (int step = 0; step < kLeastSteps || (step < kMostSteps && seconds < arguments.seconds); ++step) {

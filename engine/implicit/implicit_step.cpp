@@ -13,7 +13,8 @@ ImplicitStep<Real>::ImplicitStep(const StepPlan<Real>& plan, Threads& threads,
       profile_(profile),
       sweep_(plan, threads, scratch),
       system_(sweep_, contacts_, plan.implicit->settings.preconditioner),
-      balance_(*plan.implicit, sweep_, contacts_, system_) {}
+      balance_(*plan.implicit, sweep_, contacts_, system_),
+      guess_(sweep_, contacts_, balance_, plan.implicit->settings.tolerance) {}
 
 /// Vectors of the blocks as they now lie.
 template <class Real>
@@ -32,10 +33,9 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   const PhaseTimer timer(profile_, Phase::kNewton);
   sweep_.begin(state, dt);
   if (orders_ != state.counters.orders) follow_topology();
-  carry_acceleration();
   collect_holds();
   balance_.begin();
-  const std::optional<double> norm = start();
+  const std::optional<double> norm = guess_.find(v_);
 
   ImplicitReport report;
   const auto& settings = implicit_.settings;
@@ -46,93 +46,11 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve(norm);
   report.linear = linear_;
   report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
-  if (solved(report.newton.end)) publish(v_);
+  if (solved(report.newton.end)) {
+    guess_.keep(v_);
+    publish(v_);
+  }
   return report;
-}
-
-/// Brings the acceleration of the last step to the blocks as they now lie. Blocks that are new begin with none.
-template <class Real>
-void ImplicitStep<Real>::carry_acceleration() {
-  LastingNodeField<Real>& kept = sweep_.state().acceleration;
-  const BlockGrid& grid = sweep_.state().grid;
-  const auto blocks = grid.blocks();
-  accelerated_ = !kept.blocks.empty();
-  if (std::equal(blocks.begin(), blocks.end(), kept.blocks.begin(), kept.blocks.end())) return;
-  Vector now = system_.vector();
-  for (std::size_t b = 0; b < kept.blocks.size(); ++b) {
-    const std::int32_t place = grid.find_block(kept.blocks[b]);
-    if (place >= 0) std::copy_n(kept.field.block(b), kBlockValues, now.block(static_cast<std::size_t>(place)));
-  }
-  kept.field = std::move(now);
-  kept.blocks.assign(blocks.begin(), blocks.end());
-}
-
-/// The first guess: the change of velocity of the step before, at its rate, or none where that would turn
-/// something inside out. Returns |r| there, as evaluated last.
-template <class Real>
-std::optional<double> ImplicitStep<Real>::start() {
-  if (accelerated_) {
-    if (const auto norm = start_at(true)) return norm;
-  }
-  return start_at(false);
-}
-
-/// |r| at the acceleration of the last step, or at none, with contacts as the forces there would have them
-/// where that is better. Each that is found here saves an iteration of Newton's method.
-template <class Real>
-std::optional<double> ImplicitStep<Real>::start_at(bool by_rate) {
-  place(v_, by_rate);
-  const std::optional<double> norm = evaluate(v_);
-  if (!norm || *norm <= kGood * scale() || !foresee_contacts(v_)) return norm;
-  const std::optional<double> foreseen = evaluate(v_);
-  if (foreseen && *foreseen <= *norm) return foreseen;
-  place(v_, by_rate);
-  return evaluate(v_);
-}
-
-/// v at the acceleration of the last step, or at none, as far as contacts let it be: those that v would pass,
-/// or v^free.
-template <class Real>
-void ImplicitStep<Real>::place(Vector& v, bool by_rate) {
-  const Real dt = by_rate ? sweep_.dt() : Real(0);
-  sweep_.for_each_block([&](std::size_t b) {
-    const Real* const from = sweep_.state().acceleration.field.block(b);
-    const Real *const nodes = sweep_.state().nodes.block(b), *const begin =
-                                                                 sweep_.state().before_forces.block(b);
-    Real* const to = v.block(b);
-    Real free[kBlockValues];
-    for (std::size_t at = 0; at < kBlockValues; ++at) {
-      const bool empty =
-          !(nodes[at - at % kNodeValues] > Real(0));  // it may have had mass when `from` was kept
-      to[at] = empty ? Real(0) : dt * from[at];
-      free[at] = nodes[at] - begin[at];
-    }
-    contacts_.release(b);
-    contacts_.take_up(b, to);
-    contacts_.take_up(b, free);
-    contacts_.obey(b, to);
-  });
-}
-
-/// Takes up contacts that an explicit step with the forces at v would pass, and stops what friction would stop
-/// in one. Returns whether there are any.
-template <class Real>
-bool ImplicitStep<Real>::foresee_contacts(Vector& v) {
-  const auto [found] = sweep_.sums_of_blocks([&](std::size_t b) {
-    if (!contacts_.any(b)) return std::array{0.0};
-    const Real *const r = balance_.residual().block(b), *const nodes = sweep_.state().nodes.block(b);
-    Real* const to = v.block(b);
-    Real next[kBlockValues];
-    for (std::size_t at = 0; at < kBlockValues; ++at) {
-      const Real mass = nodes[at - at % kNodeValues];
-      next[at] = mass > Real(0) ? to[at] - r[at] / mass : Real(0);
-    }
-    const int stopped = contacts_.stop_held(b, nodes, r, to);
-    const int taken = contacts_.take_up(b, next);
-    contacts_.obey(b, to);
-    return std::array{static_cast<double>(stopped + taken)};
-  });
-  return found > 0.0;
 }
 
 template <class Real>
@@ -216,13 +134,9 @@ void ImplicitStep<Real>::publish(const Vector& v) {
   sweep_.for_each_block([&](std::size_t b) {
     Real* const nodes = sweep_.state().nodes.block(b);
     const Real *const from = v.block(b), *const begin = sweep_.state().before_forces.block(b);
-    Real* const rate = sweep_.state().acceleration.field.block(b);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      const bool empty = !(nodes[at] > Real(0));
-      for (std::size_t c = 1; c < kNodeValues; ++c) {
-        rate[at + c] = empty ? Real(0) : from[at + c] / sweep_.dt();
-        if (!empty) nodes[at + c] = begin[at + c] + from[at + c];
-      }
+      if (!(nodes[at] > Real(0))) continue;
+      for (std::size_t c = 1; c < kNodeValues; ++c) nodes[at + c] = begin[at + c] + from[at + c];
     }
     contacts_.for_each_reaction(b, [&](int node, const auto& reaction) {
       Real* const at = nodes + node * kNodeValues;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "engine/base/profile.h"
-#include "engine/implicit/momentum_balance.h"
+#include "engine/implicit/first_guess.h"
 #include "engine/solve/linear_solve.h"
 #include "engine/solve/newton.h"
 
@@ -55,16 +55,8 @@ class ImplicitStep {
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
-  /// A guess that leaves no more than this share of the impulses has the contacts that it should have.
-  static constexpr double kGood = 0.3;
-
   void follow_topology();
   void collect_holds();
-  void carry_acceleration();
-  std::optional<double> start();
-  std::optional<double> start_at(bool by_rate);
-  void place(Vector& v, bool by_rate);
-  bool foresee_contacts(Vector& v);
   void publish(const Vector& v);
 
   const StepPlan<Real>& plan_;
@@ -74,11 +66,11 @@ class ImplicitStep {
   ContactSet<Real> contacts_;
   TangentSystem<Real> system_;
   MomentumBalance<Real> balance_;
+  FirstGuess<Real> guess_;
   std::optional<LinearSolve<TangentSystem<Real>>> symmetric_;
   std::optional<LinearSolve<TangentSystem<Real>, GeneralizedConjugateResidual<TangentSystem<Real>>>> general_;
 
   Vector v_, step_, trial_, right_;  // of dv
-  bool accelerated_ = false;         // whether the last step is known
   std::int64_t orders_ = -1;         // of the topology that vectors are made for
   SolveStatus linear_ = SolveStatus::kConverged;
 };

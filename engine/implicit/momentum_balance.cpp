@@ -56,8 +56,7 @@ std::optional<double> MomentumBalance<Real>::evaluate(const Vector& dv) {
                           sweep_.push(chunk, own, push_scale(chunk));
                         });
   if (!sound) return std::nullopt;
-  const auto [sum, outer, inner] =
-      sweep_.sums_of_blocks([&](std::size_t b) { return finish_residual(b, dv.block(b), residual_.block(b)); });
+  const auto [sum, outer, inner] = finish_residual(dv);
   if (!std::isfinite(sum)) return std::nullopt;
   scale_ = std::min(scale_, std::sqrt(std::max(inner, outer)));
   return norm_ = std::sqrt(sum);
@@ -66,7 +65,12 @@ std::optional<double> MomentumBalance<Real>::evaluate(const Vector& dv) {
 /// dt f -> r = m (dv - (v^free - v^n)) - dt f, less what contacts bear. Returns the squares of what of r counts
 /// and of the outer and inner impulses, in the norm of the inverse mass.
 template <class Real>
-std::array<double, 3> MomentumBalance<Real>::finish_residual(std::size_t block, const Real* dv, Real* r) {
+std::array<double, 3> MomentumBalance<Real>::finish_residual(const Vector& dv) {
+  return sweep_.sums_of_blocks([&](std::size_t b) { return finish_block(b, dv.block(b), residual_.block(b)); });
+}
+
+template <class Real>
+std::array<double, 3> MomentumBalance<Real>::finish_block(std::size_t block, const Real* dv, Real* r) {
   const Real* const nodes = sweep_.state().nodes.block(block);
   const Real* const begin = sweep_.state().before_forces.block(block);
   Real inner[kBlockValues], outer[kBlockValues];
@@ -105,8 +109,7 @@ double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
   particles_.end_linearize();
   double norm = norm_;
   if (resolves) {
-    const auto [sum, outer, inner] = sweep_.sums_of_blocks(
-        [&](std::size_t b) { return finish_residual(b, dv.block(b), residual_.block(b)); });
+    const auto [sum, outer, inner] = finish_residual(dv);
     norm = std::sqrt(sum);
   }
   sweep_.for_each_block([&](std::size_t b) { contacts_.linearize(b, sweep_.state().nodes.block(b)); });

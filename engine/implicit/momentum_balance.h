@@ -51,7 +51,8 @@ class MomentumBalance {
   static constexpr double kLeastDeterminant = 0.02;  // for reach(): twice what the kernel refuses
 
   double push_scale(const Chunk<Real>& chunk) const;
-  std::array<double, 3> finish_residual(std::size_t block, const Real* dv, Real* r);
+  std::array<double, 3> finish_residual(const Vector& dv);
+  std::array<double, 3> finish_block(std::size_t block, const Real* dv, Real* r);
 
   BlockSweep<Real>& sweep_;
   ContactSet<Real>& contacts_;

@@ -185,26 +185,36 @@ Result<void> read_rest(ChunkReader& reader, RestField& rest) {
   });
 }
 
-template <class Real>
-Result<void> write_acceleration(AtomicFile& file, const LastingNodeField<Real>& kept) {
-  const std::uint64_t count = kept.blocks.size();
-  if (auto written = write_chunk(file, "acceleration.count", &count, sizeof count); !written) return written;
-  if (auto written = write_chunk(file, "acceleration.blocks", kept.blocks.data(), count * sizeof(Index3));
-      !written)
-    return written;
-  return write_chunk(file, "acceleration.values", kept.field.values.data(),
-                     count * kBlockValues * sizeof(Real));
+/// Visits the fields of State::last_motion.
+template <class AnyMotion, class Visit>
+Result<void> for_each_motion(AnyMotion& motion, Visit visit) {
+  if (auto done = visit("motion.velocity", motion.velocity.values); !done) return done;
+  return visit("motion.rate", motion.acceleration.values);
 }
 
 template <class Real>
-Result<void> read_acceleration(ChunkReader& reader, LastingNodeField<Real>& kept) {
+Result<void> write_motion(AtomicFile& file, const LastMotion<Real>& motion) {
+  const std::uint64_t count = motion.blocks.size();
+  if (auto written = write_chunk(file, "motion.count", &count, sizeof count); !written) return written;
+  if (auto written = write_chunk(file, "motion.blocks", motion.blocks.data(), count * sizeof(Index3)); !written)
+    return written;
+  return for_each_motion(motion, [&](const std::string& name, const auto& values) {
+    return write_chunk(file, name, values.data(), count * kBlockValues * sizeof(Real));
+  });
+}
+
+template <class Real>
+Result<void> read_motion(ChunkReader& reader, LastMotion<Real>& motion) {
   std::uint64_t count = 0;
-  if (auto read = reader.read("acceleration.count", &count, sizeof count); !read) return read;
-  kept.blocks.resize(count);
-  if (auto read = reader.read("acceleration.blocks", kept.blocks.data(), count * sizeof(Index3)); !read)
+  if (auto read = reader.read("motion.count", &count, sizeof count); !read) return read;
+  motion.blocks.resize(count);
+  if (auto read = reader.read("motion.blocks", motion.blocks.data(), count * sizeof(Index3)); !read)
     return read;
-  kept.field.resize(count);
-  return reader.read("acceleration.values", kept.field.values.data(), count * kBlockValues * sizeof(Real));
+  motion.velocity.resize(count);
+  motion.acceleration.resize(count);
+  return for_each_motion(motion, [&](const std::string& name, auto& values) {
+    return reader.read(name, values.data(), count * kBlockValues * sizeof(Real));
+  });
 }
 
 Result<Head> read_head(ChunkReader& reader) {
@@ -249,8 +259,8 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   if (state.rest.on) {
     if (auto written = write_rest(*file, state.rest); !written) return written;
   }
-  if (state.acceleration.on) {
-    if (auto written = write_acceleration(*file, state.acceleration); !written) return written;
+  if (state.last_motion.on) {
+    if (auto written = write_motion(*file, state.last_motion); !written) return written;
   }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto written = write_chunk(*file, "tallies", state.tallies.data(), tally_bytes); !written) return written;
@@ -287,8 +297,8 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
     state.rest.resize(head->owners);
     if (auto read = read_rest(*reader, state.rest); !read) return read;
   }
-  if (state.acceleration.on) {
-    if (auto read = read_acceleration(*reader, state.acceleration); !read) return read;
+  if (state.last_motion.on) {
+    if (auto read = read_motion(*reader, state.last_motion); !read) return read;
   }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto read = reader->read("tallies", state.tallies.data(), tally_bytes); !read) return read;

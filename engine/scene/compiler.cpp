@@ -244,8 +244,8 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   if (compiled.integrator.implicit && !asked)
     compiled.plan = compile_plan(compilation, state, compiled.solids, true);
   state.rest.on = compiled.plan.rest.has_value();
-  state.acceleration.on = compiled.plan.implicit.has_value();
-  if (state.rest.on && state.acceleration.on)
+  state.last_motion.on = compiled.plan.implicit.has_value();
+  if (state.rest.on && state.last_motion.on)
     return Error{ErrorKind::kBadScene, "is for explicit steps; leave it out, or time.integrator at explicit",
                  scene.where("sleep")};
   if (auto valid = compiled.plan.validate(state); !valid) return valid.error();

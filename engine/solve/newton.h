@@ -13,11 +13,10 @@
 //   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
 //   bool models()                                      whether it knows a place near v to be linearised at
-//   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns |r|
-//   at v
-//                                                      of the linear model
-//   solve(double share, Vector& step)                  step = -A^-1 r(v) of the model, |A step + r| <= share
-//   |r| double reach(const Vector& step, double length)    the longest length along step at which r is defined,
+//   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns the
+//                                                      |r| that the linear model has at v
+//   solve(double share, Vector& step)                  step = -A^-1 r of the model, |A step + r| <= share |r|
+//   double reach(const Vector& step, double length)    the longest length along step at which r is defined,
 //                                                      when at `length`, evaluated last, it is not
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step, or near
 //                                                                                it, as constraints have it

@@ -28,14 +28,17 @@ struct NodeField {
   std::size_t bytes() const { return values.bytes(); }
 };
 
-/// A field that outlives orders: it knows the blocks that it was written for.
+/// How nodes moved in the last step. It outlives orders: it knows the blocks that it was written for.
 template <class Real>
-struct LastingNodeField {
-  bool on = false;             ///< whether the scene's steps keep it
-  std::vector<Index3> blocks;  ///< in the order of their values
-  NodeField<Real> field;
+struct LastMotion {
+  bool on = false;               ///< whether the scene's steps keep it
+  std::vector<Index3> blocks;    ///< in the order of their values; none before the first step
+  NodeField<Real> velocity;      ///< [m, v] at its end
+  NodeField<Real> acceleration;  ///< [0, a], m/s^2
 
-  std::size_t bytes() const { return field.bytes() + blocks.capacity() * sizeof(Index3); }
+  std::size_t bytes() const {
+    return velocity.bytes() + acceleration.bytes() + blocks.capacity() * sizeof(Index3);
+  }
 };
 
 template <class Real>

@@ -60,7 +60,7 @@ struct State {
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar
   NodeField<Real> before_forces;            ///< mass and velocity before forces, for transfers that ask for it
   SparseNodeField<Real> after_friction;     ///< mass and v-tilde, in blocks where there is friction
-  LastingNodeField<Real> acceleration;      ///< [0, a] in the last step, m/s^2, where steps are implicit; saved
+  LastMotion<Real> last_motion;             ///< where steps are implicit; saved
   std::vector<std::uint64_t> rows_touched;  ///< per owner: arena rows that its particles reach
 
   std::size_t particles() const {
@@ -90,7 +90,7 @@ struct State {
     return sum;
   }
   std::size_t grid_bytes() const {
-    return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + acceleration.bytes() + grid.bytes();
+    return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + last_motion.bytes() + grid.bytes();
   }
 };
 

@@ -102,7 +102,7 @@ TEST(Integrator, SoftSandInShortFrames_Explicit) {
   const CompiledScene<float> soft = bed({"time.frames_per_second=1000"}, kFlat);
   EXPECT_FALSE(soft.integrator.implicit);
   EXPECT_FALSE(soft.plan.implicit);
-  EXPECT_FALSE(soft.state.acceleration.on);
+  EXPECT_FALSE(soft.state.last_motion.on);
   EXPECT_THAT(soft.integrator.reason, HasSubstr("explicit: 3 steps per frame (sound) at "));
   EXPECT_THAT(soft.integrator.reason, HasSubstr("implicit: 1 step per frame (frame) at "));
   EXPECT_THAT(soft.integrator.reason, EndsWith("cheaper: explicit"));
@@ -112,7 +112,7 @@ TEST(Integrator, SoftSandInShortFrames_Explicit) {
   EXPECT_TRUE(stiff.integrator.implicit);
   EXPECT_TRUE(stiff.plan.implicit);
   EXPECT_TRUE(stiff.plan.limits.sets.empty()) << "nothing of stiffness bounds its steps";
-  EXPECT_TRUE(stiff.state.acceleration.on);
+  EXPECT_TRUE(stiff.state.last_motion.on);
   EXPECT_THAT(stiff.integrator.reason, HasSubstr("explicit: 295 steps per frame (sound) at "));
   EXPECT_THAT(stiff.integrator.reason, EndsWith("cheaper: implicit"));
 }

@@ -60,6 +60,33 @@ TEST(ImplicitConverge, StiffColumn_IsSolvedInAtMostEightIterations) {
   EXPECT_LE(figures.newton, 8.0);
 }
 
+/// A plate sinks at 1 cm/s into a bed of stiff sand that lies under its weight, and rubs on it.
+constexpr const char* kPlate = R"json({"repose": 1, "name": "plate",
+  "grid": {"spacing": 0.01, "plane_strain": "z", "transfer": "aflip", "kept_velocity": 0.999},
+  "time": {"integrator": "implicit", "max_step": 1e-3},
+  "materials": {"sand": {"type": "drucker_prager", "friction_angle": 30, "cone_matching": "plane_strain",
+                         "youngs_modulus": 3.537e7}},
+  "bodies": [{"name": "bed", "material": "sand", "particles_per_cell": 9,
+              "shape": {"type": "box", "lower": [-0.1, 0, -1], "upper": [0.1, 0.1, 1]}}],
+  "prestress": [{"body": "bed"}],
+  "colliders": [
+    {"name": "floor", "contact": "sticky", "shape": {"type": "plane", "point": [0, -0.005, 0]}},
+    {"name": "left", "contact": "slip", "shape": {"type": "plane", "point": [-0.105, 0, 0], "normal": [1, 0, 0]}},
+    {"name": "right", "contact": "slip", "shape": {"type": "plane", "point": [0.105, 0, 0], "normal": [-1, 0, 0]}},
+    {"name": "plate", "contact": "separating", "friction": 0.5,
+     "shape": {"type": "box", "lower": [-0.03, 0.105, -1], "upper": [0.03, 0.2, 1]},
+     "motion": {"keys": [{"time": 0}, {"time": 1, "translation": [0, -0.01, 0]}]}}]})json";
+
+// Where sand hardly moves, a step begins where the last one ended; from its acceleration it takes 3.1.
+TEST(ImplicitConverge, PlateThatRubs_IsSolvedInAtMostTwoIterations) {
+  const auto simulation = simulate(scene_of(kPlate, {}), 1);
+  const Ride figures = ride(*simulation, 0.3, 300);
+  report("plate_that_rubs", figures);
+  EXPECT_FALSE(figures.refused);
+  EXPECT_GE(figures.clean_share(), kShare);
+  EXPECT_LE(figures.newton, 2.0);
+}
+
 TEST(ImplicitConverge, InTooFewIterations_IsRejected) {
   const auto simulation = simulate(in_long_steps(kColumn, 10.0, {"implicit.newton_iterations=2"}), 1);
   const Ride figures = ride(*simulation, 0.2, 100);
