@@ -47,6 +47,7 @@ void FirstGuess<Real>::follow_blocks() {
 template <class Real>
 std::optional<double> FirstGuess<Real>::begin_at(Kind kind, Vector& dv) {
   place(kind, dv);
+  balance_.forget_scale();  // of another guess, that may be far off
   const std::optional<double> norm = balance_.evaluate(dv);
   if (!norm || *norm <= kGood * balance_.scale() || !foresee_contacts(dv)) return norm;
   const std::optional<double> foreseen = balance_.evaluate(dv);

@@ -44,6 +44,7 @@ class ImplicitStep {
   double slope(const Vector& step) { return dot(system_, balance_.residual(), step); }
   bool change_contacts(Vector& v);
   bool models() const { return balance_.models(); }
+  bool tightens() const { return !balance_.fades(); }
   double linearize(const Vector& v, bool near) { return balance_.linearize(v, near); }
   struct Solved {
     int iterations = 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "engine/implicit/inversion.h"
 
@@ -33,7 +32,7 @@ void MomentumBalance<Real>::follow_topology() {
 
 template <class Real>
 void MomentumBalance<Real>::begin() {
-  scale_ = std::numeric_limits<double>::infinity();
+  forget_scale();
   particles_.begin();
   sweep_.over_particles(
       {.from = &sweep_.state().before_forces},

@@ -7,6 +7,7 @@
 // digits in single precision.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "engine/implicit/particle_response.h"
@@ -35,9 +36,13 @@ class MomentumBalance {
   /// The larger of the outer and the inner impulses of the step, in that norm, the least seen in this step. Of
   /// a stiff body inner ones are large far from the solution: what counts is what acts at it.
   double scale() const { return scale_; }
+  /// What is evaluated from here on counts alone.
+  void forget_scale() { scale_ = std::numeric_limits<double>::infinity(); }
 
   /// Whether there are models near dv, rather than at it.
   bool models() const { return particles_.resolves(); }
+  /// Whether tangents may be indefinite.
+  bool fades() const { return particles_.fades(); }
   /// Makes the system the tangent at the dv that was evaluated last, or of a model near it; returns |r| as the
   /// model has it at that dv.
   double linearize(const Vector& dv, bool near);

@@ -11,7 +11,11 @@ ParticleResponse<Real>::ParticleResponse(const ImplicitPlan<Real>& plan, BlockSw
       returns_(plan.settings.mode == TangentMode::kExact || plan.settings.mode == TangentMode::kProjected),
       sweep_(sweep),
       system_(system) {
-  for (const SetResponse<Real>& set : plan.sets) resolves_ = resolves_ || (returns_ && set.kernels.resolve);
+  const bool unilateral = plan.settings.mode == TangentMode::kUnilateral;
+  for (const SetResponse<Real>& set : plan.sets) {
+    resolves_ = resolves_ || (returns_ && set.kernels.resolve);
+    fades_ = fades_ || (unilateral && set.kernels.fading_stress);
+  }
 }
 
 template <class Real>

@@ -24,6 +24,8 @@ class ParticleResponse {
   void begin() { modelled_ = false; }
   /// Whether sand yields within the solve, so that models are made away from the velocities.
   bool resolves() const { return resolves_; }
+  /// Whether sand has an energy that fades under tension, so that tangents may be indefinite.
+  bool fades() const { return fades_; }
   std::size_t bytes() const { return at_begin_.bytes() + at_trial_.bytes() + model_.bytes(); }
 
   // Passes over a chunk.
@@ -73,7 +75,7 @@ class ParticleResponse {
 
   const ImplicitPlan<Real>& plan_;
   bool returns_;  // whether sand yields within the solve
-  bool resolves_ = false;
+  bool resolves_ = false, fades_ = false;
   BlockSweep<Real>& sweep_;
   TangentSystem<Real>& system_;
   bool modelled_ = false;

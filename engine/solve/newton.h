@@ -13,6 +13,8 @@
 //   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
 //   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
 //   bool models()                                      whether it knows a place near v to be linearised at
+//   bool tightens()                                    whether tight solves help in hard steps: not where
+//                                                      tangents are indefinite
 //   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns the
 //                                                      |r| that the linear model has at v
 //   solve(double share, Vector& step)                  step = -A^-1 r of the model, |A step + r| <= share |r|
@@ -92,7 +94,7 @@ class Newton {
 
  private:
   // Shares of |r| that linear solves leave. Hard is what begins with more than half of what acts, or has an
-  // iteration that leaves more than half of |r|.
+  // iteration that leaves more than half of |r|, unless the problem has it otherwise.
   static constexpr double kLeft = 0.2, kLeftWhenHard = 0.05, kMostLeft = 0.5, kHard = 0.5;
   static constexpr double kDescent = 1e-4;  // share of the promised descent that a length must make good
   static constexpr double kNearly = 10.0;   // tolerances
@@ -123,7 +125,7 @@ class Newton {
     const double left = problem_.linearize(v_, near_);
     const auto& norms = report_.history;
     const bool slow = norms.size() > 1 && norms.back() > kHard * norms[norms.size() - 2];
-    hard_ = hard_ || slow || left > kHard * problem_.scale();
+    hard_ = hard_ || (problem_.tightens() && (slow || left > kHard * problem_.scale()));
     const double share = std::clamp(0.3 * tolerance() / left, hard_ ? kLeftWhenHard : kLeft, kMostLeft);
     const auto solved = problem_.solve(share, step_);
     report_.linear_iterations += solved.iterations;

@@ -57,6 +57,7 @@ struct DenseProblem {
     return true;
   }
   bool models() const { return static_cast<bool>(model); }
+  bool tightens() const { return true; }
   double linearize(const Vector& v, bool near) {
     left = r;
     a = derivative(evaluated);
