@@ -20,6 +20,7 @@ std::optional<double> FirstGuess<Real>::find(Vector& dv) {
   const auto by_velocity = begin_at(Kind::kAtLastVelocity, dv);
   const double most = std::min(kBetter * by_rate.value_or(kUndefined), kGood * balance_.scale());
   if (by_velocity && *by_velocity <= most) return by_velocity;
+  // Once more, for the solve goes on with what was evaluated last.
   return begin_at(by_rate ? Kind::kAtLastRate : Kind::kAtRest, dv);
 }
 

@@ -100,6 +100,24 @@ TEST(Parting, Lagged_HoldsTheBlocksTogether) {
   EXPECT_LT(share("`exact`"), 15.0);
 }
 
+// Without weight there is nothing to measure a residual against but the impulses of the blocks themselves.
+TEST(Parting, InLongSteps_UnderATenthOfLagged) {
+  StudyArguments arguments;
+  arguments.modes = {"lagged", "projected", "unilateral"};
+  arguments.steps = {1e-2};
+  arguments.most_seconds = 600;
+  const auto table = study_parting(arguments);
+  ASSERT_TRUE(table) << table.error().text();
+  int rows = 0;
+  for (const auto& row : table->rows) {
+    if (row.front() != "`projected`" && row.front() != "`unilateral`") continue;
+    ++rows;
+    ASSERT_NE(row[4], "") << row.front() << ": " << row[2];
+    EXPECT_LT(std::stod(row[4]), 0.1) << row.front();
+  }
+  EXPECT_EQ(rows, 2);
+}
+
 TEST(ImplicitBench, Page_HoldsTheTableOfItsMarkAlone) {
   const std::string page =
       std::filesystem::temp_directory_path() / ("repose_implicit_page_" + std::to_string(getpid()));
