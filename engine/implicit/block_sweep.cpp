@@ -32,11 +32,12 @@ void BlockSweep<Real>::clear(Vector& nodes) {
 
 template <class Real>
 void BlockSweep<Real>::gather_gradient(const Chunk<Real>& chunk, const Real* arena,
-                                       Real* const gradient[9]) const {
+                                       Real* const gradient[9], const Soon<Real>& soon) const {
   GatherInput<Real> in{};
   in.particles = chunk.particles;
   in.lattice = lattice_;
   std::copy_n(gradient, kAffineComponents, in.gradient);
+  in.soon = soon;
   plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gradient(in, arena);
 }
 

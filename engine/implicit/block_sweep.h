@@ -82,8 +82,9 @@ class BlockSweep {
   static std::size_t stride(const Chunk<Real>& chunk) { return whole_groups(chunk.particles.count); }
   std::size_t room() const { return room_; }
 
-  /// The gradient of an arena's vectors at the particles of a chunk.
-  void gather_gradient(const Chunk<Real>& chunk, const Real* arena, Real* const gradient[9]) const;
+  /// The gradient of an arena's vectors at the particles of a chunk; memory is asked for what is read `soon`.
+  void gather_gradient(const Chunk<Real>& chunk, const Real* arena, Real* const gradient[9],
+                       const Soon<Real>& soon = {}) const;
   /// Adds -scale S g_i to the nodes, S in own.matrix.
   void push(Chunk<Real>& chunk, ImplicitScratch<Real>& own, double scale) const;
   /// Adds scale times the blocks of nodes to own.arena and own.second.

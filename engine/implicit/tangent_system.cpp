@@ -34,8 +34,9 @@ void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
       gradient[k] = chunk.scratch.gradient.data() + k * kChunk;
       matrix[k] = own.matrix.data() + k * kChunk;
     }
-    sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), gradient);
-    sweep_.kernels().apply_tangent(tangent(set, chunk), gradient, matrix, chunk.particles.count);
+    const Real* const tangents = tangent(set, chunk);
+    sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), gradient, {tangents, kTangentValues});
+    sweep_.kernels().apply_tangent(tangents, gradient, matrix, chunk.particles.count);
     sweep_.push(chunk, own, -square_dt * chunk.set.particle_volume);
   });
 }

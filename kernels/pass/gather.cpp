@@ -182,6 +182,15 @@ REPOSE_INLINE void load_rows(const T* arena, std::int32_t node,
   }
 }
 
+/// A particle's share of what is read soon.
+template <class T>
+REPOSE_INLINE void ask_for(const Soon<T>& soon, std::size_t particle) {
+  constexpr std::size_t kLine = 64 / sizeof(T);
+  for (std::size_t k = 0; k < soon.values; k += kLine) {
+    Pack<T>::prefetch(soon.from + particle * soon.values + k);
+  }
+}
+
 template <class Stencil, Affine affine, Force force, class T>
 void gather(const GatherInput<T>& in, const T* arena) {
   using S = Shape<Stencil, affine, force>;
@@ -197,6 +206,7 @@ void gather(const GatherInput<T>& in, const T* arena) {
         load_rows<Stencil>(arena, node, rows);
       }
       sum_stencil<S>(rows, z_positions, lane, staged);
+      ask_for(in.soon, first + lane);
     }
     finish<S>(in, staged, first, lanes);
   }

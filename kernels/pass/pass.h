@@ -51,6 +51,14 @@ struct ScatterInput {
   Lattice<Real> lattice;
 };
 
+/// Numbers of the same particles that the next pass reads: a pass that computes much and reads little asks
+/// memory for them. No values: nothing to ask for.
+template <class Real>
+struct Soon {
+  const Real* from = nullptr;
+  std::size_t values = 0;  ///< a particle, all of one pack of particles before those of the next
+};
+
 /// Nodes to particles. What is a null pointer is not wanted; a pointer may be that of the particles' own
 /// channel.
 template <class Real>
@@ -64,6 +72,7 @@ struct GatherInput {
                                       ///< moments it is C
   const Real* before[3];              ///< sum w v_i before forces, m/s; null unless the transfer keeps velocity
   Real kept_velocity;                 ///< share of its own velocity that a particle keeps, in [0, 1]
+  Soon<Real> soon;                    ///< asked for meanwhile
 };
 
 /// What moving a span of particles did to it.
