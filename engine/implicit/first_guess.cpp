@@ -1,6 +1,7 @@
 #include "engine/implicit/first_guess.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace repose {
@@ -16,7 +17,8 @@ std::optional<double> FirstGuess<Real>::find(Vector& dv) {
   follow_blocks();
   if (!knows) return begin_at(Kind::kAtRest, dv);
   const auto by_rate = begin_at(Kind::kAtLastRate, dv);
-  if (by_rate && *by_rate <= tolerance_ * balance_.scale()) return by_rate;
+  const bool gains = sweep_.state().last_motion.gained > kGood;
+  if (by_rate && (gains || *by_rate <= tolerance_ * balance_.scale())) return by_rate;
   const auto by_velocity = begin_at(Kind::kAtLastVelocity, dv);
   const double most = std::min(kBetter * by_rate.value_or(kUndefined), kGood * balance_.scale());
   if (by_velocity && *by_velocity <= most) return by_velocity;
@@ -107,21 +109,27 @@ bool FirstGuess<Real>::foresee_contacts(Vector& dv) {
 
 template <class Real>
 void FirstGuess<Real>::keep(const Vector& dv) {
-  sweep_.for_each_block([&](std::size_t b) {
-    LastMotion<Real>& last = sweep_.state().last_motion;
+  LastMotion<Real>& last = sweep_.state().last_motion;
+  const auto [gained] = sweep_.sums_of_blocks([&](std::size_t b) {
+    double sum = 0.0;
     const Real *const change = dv.block(b), *const nodes = sweep_.state().nodes.block(b);
     const Real* const begin = sweep_.state().before_forces.block(b);
     Real *const velocity = last.velocity.block(b), *const acceleration = last.acceleration.block(b);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      const bool empty = !(nodes[at] > Real(0));
+      const bool empty = !(nodes[at] > Real(0)), known = !empty && velocity[at] > Real(0);
       velocity[at] = empty ? Real(0) : nodes[at];
       acceleration[at] = Real(0);
       for (std::size_t k = at + 1; k < at + kNodeValues; ++k) {
-        velocity[k] = empty ? Real(0) : begin[k] + change[k];
+        const Real now = empty ? Real(0) : begin[k] + change[k];
+        const auto gain = known ? static_cast<double>(now - velocity[k]) : 0.0;
+        sum += static_cast<double>(velocity[at]) * gain * gain;
+        velocity[k] = now;
         acceleration[k] = empty ? Real(0) : change[k] / sweep_.dt();
       }
     }
+    return std::array{sum};
   });
+  last.gained = gained > 0.0 ? std::sqrt(gained) / balance_.scale() : 0.0;
 }
 
 template class FirstGuess<float>;

@@ -4,7 +4,7 @@
 //   hardly moves nothing else counts.
 // The first stands unless the second is good and leaves less than half of its residual: what a guess is late by
 // the tolerance of the solve never quite makes up for, and the next step is late by the same (docs/math.md,
-// 46).
+// 46). The second is not tried where velocities gained much in the last step: it would be late by as much.
 #pragma once
 
 #include <optional>

@@ -196,6 +196,8 @@ template <class Real>
 Result<void> write_motion(AtomicFile& file, const LastMotion<Real>& motion) {
   const std::uint64_t count = motion.blocks.size();
   if (auto written = write_chunk(file, "motion.count", &count, sizeof count); !written) return written;
+  if (auto written = write_chunk(file, "motion.gained", &motion.gained, sizeof motion.gained); !written)
+    return written;
   if (auto written = write_chunk(file, "motion.blocks", motion.blocks.data(), count * sizeof(Index3)); !written)
     return written;
   return for_each_motion(motion, [&](const std::string& name, const auto& values) {
@@ -207,6 +209,7 @@ template <class Real>
 Result<void> read_motion(ChunkReader& reader, LastMotion<Real>& motion) {
   std::uint64_t count = 0;
   if (auto read = reader.read("motion.count", &count, sizeof count); !read) return read;
+  if (auto read = reader.read("motion.gained", &motion.gained, sizeof motion.gained); !read) return read;
   motion.blocks.resize(count);
   if (auto read = reader.read("motion.blocks", motion.blocks.data(), count * sizeof(Index3)); !read)
     return read;

@@ -35,6 +35,7 @@ struct LastMotion {
   std::vector<Index3> blocks;    ///< in the order of their values; none before the first step
   NodeField<Real> velocity;      ///< [m, v] at its end
   NodeField<Real> acceleration;  ///< [0, a], m/s^2
+  double gained = 0.0;           ///< what velocities gained in it, of the impulses that acted
 
   std::size_t bytes() const {
     return velocity.bytes() + acceleration.bytes() + blocks.capacity() * sizeof(Index3);

@@ -6,8 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <set>
 
+#include "engine/scene/compiler.h"
+#include "engine/step/stepper.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {
@@ -82,6 +86,11 @@ TEST(Implicit, FreeFall_IsThatOfTheVelocityAtTheEnd) {
   EXPECT_NEAR(fallen, 9.81 * dt * dt * kSteps * (kSteps + 1) / 2.0, 1e-12);
 }
 
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// Runs of 16 steps with other numbers of threads, and one that is saved and loaded on the way, end in the bits
 /// of one thread.
 void expect_same_bits(const std::vector<std::string>& overrides) {
@@ -100,10 +109,36 @@ void expect_same_bits(const std::vector<std::string>& overrides) {
   ASSERT_TRUE(run_steps(*saved, 7));
   ASSERT_TRUE(saved->save(path));
   const Result<void> load = loaded->load(path);
-  std::filesystem::remove(path);
   ASSERT_TRUE(load) << load.error().text();
+  // Also what 9 steps do not tell of.
+  const std::string file = bytes_of(path);
+  ASSERT_TRUE(loaded->save(path));
+  EXPECT_TRUE(bytes_of(path) == file) << name << ": saved again, the file is another";
+  std::filesystem::remove(path);
   ASSERT_TRUE(run_steps(*loaded, 9));
   EXPECT_EQ(loaded->hash(), one->hash()) << name << ", resumed";
+}
+
+// By this a step knows whether it may begin at the velocities of the last one.
+TEST(Implicit, WhatVelocitiesGainOfTheImpulses_IsAllInAFallNothingAtRest) {
+  const auto gained = [](std::vector<std::string> overrides, int steps) {
+    auto compiled = compile_scene<float>(column(std::move(overrides)), {});
+    EXPECT_TRUE(compiled);
+    State<float> state = std::move(compiled->state);
+    Stepper<float> stepper(std::move(compiled->plan), 1);
+    for (int k = 0; k < steps; ++k)
+      EXPECT_TRUE(stepper.step(state, std::numeric_limits<double>::infinity()).accepted);
+    return state.last_motion.gained;
+  };
+  EXPECT_EQ(gained({"colliders=[]"}, 1), 0.0) << "there is no last velocity in the first step";
+  EXPECT_NEAR(gained({"colliders=[]"}, 2), 1.0, 0.02);
+  EXPECT_NEAR(gained({"colliders=[]"}, 10), 1.0, 0.02);
+  const std::string boxed = R"(colliders=[
+    {"name": "floor", "contact": "sticky", "shape": {"type": "plane", "point": [0, -0.005, 0]}},
+    {"name": "left", "contact": "slip", "shape": {"type": "plane", "point": [-0.005, 0, 0], "normal": [1, 0, 0]}},
+    {"name": "right", "contact": "slip",
+     "shape": {"type": "plane", "point": [0.105, 0, 0], "normal": [-1, 0, 0]}}])";
+  EXPECT_LT(gained({R"(prestress=[{"body": "c"}])", boxed}, 200), 0.1) << "settled";
 }
 
 TEST(Implicit, ThreadsAndCheckpoints_SameBits) {
