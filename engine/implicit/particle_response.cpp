@@ -71,9 +71,9 @@ void ParticleResponse<Real>::keep_begin(std::size_t set, const Chunk<Real>& chun
 template <class Real>
 void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk) {
   const Trial trial = trial_of(set, chunk);
-  sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), trial.gradient);
   Real* begin[kAffineComponents];
   find(at_begin_, kAffineComponents, 0, set, chunk, begin);
+  sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), trial.gradient, {begin[0], kAffineComponents});
   const std::size_t count = chunk.particles.count;
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
     for (std::size_t p = 0; p < count; ++p) trial.gradient[k][p] += begin[k][p];
