@@ -179,7 +179,8 @@ struct Effect {
   template <class Real>
   void add_after_motion(Assembly<Real>&, std::size_t) const {}
   /// Passes of set k just before and just after its return map. Those after run in the list's reverse order: an
-  /// effect's two halves enclose those of the effects that follow it in the list.
+  /// effect's two halves enclose those of the effects that follow it in the list. An implicit step runs those
+  /// before in every evaluation: of a particle they may change nothing but its trial strain.
   template <class Real>
   void add_before_return(Assembly<Real>&, std::size_t) const {}
   template <class Real>

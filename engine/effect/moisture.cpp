@@ -73,19 +73,24 @@ void wet(const Moisture::Source& source, Chunk<Real>& chunk, Real* w) {
 
 }  // namespace
 
+/// Not just before the return map: what stands there an implicit step runs as often as it evaluates.
+template <class Real>
+void Moisture::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
+  if (sources.empty() || find(assembly.sets[set]) == nullptr) return;
+  const std::size_t channel = assembly.state.sets[set].extra_index(kSaturation);
+  assembly.plan.gather[set].push_back({{"wetting", "wetting", {"position", kSaturation}, {kSaturation}},
+                                       [sources = sources, channel](Chunk<Real>& chunk) {
+                                         Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
+                                         for (const Source& source : sources) wet(source, chunk, w);
+                                       }});
+}
+
 template <class Real>
 void Moisture::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
   const MoistureParameters* p = find(assembly.sets[set]);
   if (p == nullptr) return;
   const std::size_t channel = assembly.state.sets[set].extra_index(kSaturation);
   const auto change = static_cast<Real>(assembly.sets[set].sand().cohesion_strain(p->cohesion_change));
-  if (!sources.empty()) {
-    assembly.plan.gather[set].push_back({{"wetting", "wetting", {"position", kSaturation}, {kSaturation}},
-                                         [sources = sources, channel](Chunk<Real>& chunk) {
-                                           Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
-                                           for (const Source& source : sources) wet(source, chunk, w);
-                                         }});
-  }
   assembly.plan.gather[set].push_back(
       {{"moisture", why(), {kSaturation, "cohesion"}, {"cohesion"}}, [channel, change](Chunk<Real>& chunk) {
          const Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
@@ -112,6 +117,8 @@ void Moisture::add_to_nodes(Assembly<Real>& assembly) const {
 
 template void Moisture::add_to_nodes(Assembly<float>&) const;
 template void Moisture::add_to_nodes(Assembly<double>&) const;
+template void Moisture::add_after_motion(Assembly<float>&, std::size_t) const;
+template void Moisture::add_after_motion(Assembly<double>&, std::size_t) const;
 template void Moisture::add_before_return(Assembly<float>&, std::size_t) const;
 template void Moisture::add_before_return(Assembly<double>&, std::size_t) const;
 

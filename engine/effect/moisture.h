@@ -39,6 +39,8 @@ struct Moisture : SandEffect<MoistureParameters> {
   template <class Real>
   void add_to_nodes(Assembly<Real>& assembly) const;
   template <class Real>
+  void add_after_motion(Assembly<Real>& assembly, std::size_t set) const;
+  template <class Real>
   void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
 };
 
