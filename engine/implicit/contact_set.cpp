@@ -14,6 +14,10 @@ auto at_node(Real* vector, int node) {
   return Eigen::Map<std::conditional_t<std::is_const_v<Real>, const Vector3, Vector3>>(vector +
                                                                                        node * kNodeValues + 1);
 }
+/// Sine and cosine of the angle, ten degrees, below which two walls are one. Of a node held by both J would be
+/// shared out into a push and a pull many times as large; the pass that follows minds what is left.
+constexpr double kApart = 0.17, kAlike = 0.985;
+
 template <class Real>
 auto normal_of(const Hold<Real>& hold) {
   return Eigen::Map<const Eigen::Matrix<Real, 3, 1>>(hold.normal);
@@ -43,8 +47,7 @@ void ContactSet<Real>::set_block(std::size_t block, const std::vector<Hold<Real>
       node = nodes.end() - 1;
       node->index = hold.node;
     }
-    node->holds.push_back(hold);
-    node->active.push_back(hold.kind == Hold<Real>::Kind::kAgainst ? 0 : 1);
+    node->contacts.push_back({hold, hold.kind != Hold<Real>::Kind::kAgainst, Real(0)});
   }
   for (Node& node : nodes) span(node);
 }
@@ -54,7 +57,7 @@ void ContactSet<Real>::set_block(std::size_t block, const std::vector<Hold<Real>
 template <class Real>
 void ContactSet<Real>::span(Node& node) {
   node.rank = 0;
-  const auto add = [&node](const Vector3& normal, Real bound) {
+  const auto add = [&node](const Vector3& normal, Real bound, int contact) {
     Vector3 rest = normal;
     Real left = bound;
     for (int k = 0; k < node.rank; ++k) {
@@ -63,19 +66,35 @@ void ContactSet<Real>::span(Node& node) {
       left -= along * node.value[k];
     }
     const Real length = rest.norm();
-    if (node.rank == 3 || length < Real(1e-3)) return;  // what is held already
+    if (node.rank == 3 || length < Real(kApart)) return;  // what is held already
     node.axis[node.rank] = rest / length;
     node.value[node.rank] = left / length;
+    node.normal[node.rank] = normal;
+    node.contact[node.rank] = contact;
     ++node.rank;
   };
-  for (std::size_t k = 0; k < node.holds.size(); ++k) {
-    const Hold<Real>& hold = node.holds[k];
-    if (node.active[k] == 0) continue;
+  for (std::size_t k = 0; k < node.contacts.size(); ++k) {
+    const Hold<Real>& hold = node.contacts[k].hold;
+    if (!node.contacts[k].active) continue;
     if (hold.kind != Hold<Real>::Kind::kAll) {
-      add(normal_of(hold), hold.bound);
+      add(normal_of(hold), hold.bound, static_cast<int>(k));
       continue;
     }
-    for (int axis = 0; axis < 3; ++axis) add(Vector3::Unit(axis), hold.velocity[axis]);
+    for (int axis = 0; axis < 3; ++axis) add(Vector3::Unit(axis), hold.velocity[axis], -1);
+  }
+}
+
+/// J = sum of push_k n_k over the contacts that span what is held, backwards through Gram and Schmidt; of those
+/// that hold nothing of their own, push is J n.
+template <class Real>
+void ContactSet<Real>::share_out(Node& node) {
+  for (Contact& contact : node.contacts)
+    contact.push = contact.active ? normal_of(contact.hold).dot(node.reaction) : Real(0);
+  Vector3 rest = node.reaction;
+  for (int k = node.rank - 1; k >= 0; --k) {
+    const Real push = node.axis[k].dot(rest) / node.axis[k].dot(node.normal[k]);
+    rest -= push * node.normal[k];
+    if (node.contact[k] >= 0) node.contacts[static_cast<std::size_t>(node.contact[k])].push = push;
   }
 }
 
@@ -107,22 +126,20 @@ void ContactSet<Real>::project(std::size_t block, Real* x) const {
 /// in one surface, the first of the scene takes the whole impulse, as in the pass that follows.
 template <class Real>
 Real ContactSet<Real>::friction_bound(const Node& node, std::size_t k) {
-  const Hold<Real>& hold = node.holds[k];
-  if (node.active[k] == 0 || !(hold.friction > Real(0))) return Real(0);
+  const auto& [hold, active, push] = node.contacts[k];
+  if (!active || !(hold.friction > Real(0))) return Real(0);
   for (std::size_t before = 0; before < k; ++before) {
-    const bool same = normal_of(node.holds[before]).dot(normal_of(hold)) > Real(0.999);
-    if (same && node.active[before] != 0) return Real(0);
+    const bool same = normal_of(node.contacts[before].hold).dot(normal_of(hold)) > Real(kAlike);
+    if (same && node.contacts[before].active) return Real(0);
   }
-  const Real pushed = normal_of(hold).dot(node.reaction);
-  return hold.friction *
-         (hold.kind == Hold<Real>::Kind::kAgainst ? std::max(pushed, Real(0)) : std::abs(pushed));
+  return hold.friction * (hold.kind == Hold<Real>::Kind::kAgainst ? std::max(push, Real(0)) : std::abs(push));
 }
 
 /// B, over all active contacts of a node.
 template <class Real>
 Real ContactSet<Real>::friction_bound(const Node& node) {
   Real sum = Real(0);
-  for (std::size_t k = 0; k < node.holds.size(); ++k) sum += friction_bound(node, k);
+  for (std::size_t k = 0; k < node.contacts.size(); ++k) sum += friction_bound(node, k);
   return sum;
 }
 
@@ -132,11 +149,11 @@ const Hold<Real>* ContactSet<Real>::rough(const Node& node) {
   if (node.rank == 3) return nullptr;
   const Hold<Real>* roughest = nullptr;
   Real most = Real(0);
-  for (std::size_t k = 0; k < node.holds.size(); ++k) {
+  for (std::size_t k = 0; k < node.contacts.size(); ++k) {
     const Real bound = friction_bound(node, k);
     if (!(bound > most)) continue;
     most = bound;
-    roughest = &node.holds[k];
+    roughest = &node.contacts[k].hold;
   }
   return roughest;
 }
@@ -154,6 +171,7 @@ void ContactSet<Real>::bear(std::size_t block, const Real* nodes, const Real* v,
     auto at = at_node(r, node.index), counts = at_node(left, node.index);
     const Vector3 asked = along_walls(node, at);
     node.reaction = at - asked;
+    share_out(node);
     node.evaluated = {};
     at = counts = asked;
     const Hold<Real>* const wall = rough(node);
@@ -205,9 +223,7 @@ void ContactSet<Real>::precondition(std::size_t block, Real* z) const {
 template <class Real>
 void ContactSet<Real>::release(std::size_t block) {
   for (Node& node : nodes_[block]) {
-    for (std::size_t k = 0; k < node.holds.size(); ++k) {
-      node.active[k] = node.holds[k].kind == Hold<Real>::Kind::kAgainst ? 0 : 1;
-    }
+    for (Contact& contact : node.contacts) contact.active = contact.hold.kind != Hold<Real>::Kind::kAgainst;
     span(node);
   }
 }
@@ -218,12 +234,12 @@ int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
-    for (std::size_t k = 0; k < node.holds.size(); ++k) {
-      const Hold<Real>& hold = node.holds[k];
-      if (node.active[k] != 0) continue;
+    for (auto& [hold, active, push] : node.contacts) {
+      if (active) continue;
       const Real along = normal_of(hold).dot(at_node(v, node.index));
       if (along < hold.bound - kRounding * (std::abs(hold.bound) + at_node(v, node.index).norm())) {
-        node.active[k] = 1;
+        active = true;
+        push = Real(0);
         ++changed;
       }
     }
@@ -238,12 +254,10 @@ int ContactSet<Real>::let_go(std::size_t block) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
-    for (std::size_t k = 0; k < node.holds.size(); ++k) {
-      if (node.active[k] == 0 || node.holds[k].kind != Hold<Real>::Kind::kAgainst) continue;
-      if (normal_of(node.holds[k]).dot(node.reaction) < Real(0)) {
-        node.active[k] = 0;
-        ++changed;
-      }
+    for (auto& [hold, active, push] : node.contacts) {
+      if (!active || hold.kind != Hold<Real>::Kind::kAgainst || !(push < Real(0))) continue;
+      active = false;
+      ++changed;
     }
     if (changed > 0) span(node);
     changes += changed;

@@ -1,6 +1,7 @@
 // Repose: which nodes are held during an implicit step, and along which directions. Contacts that only push are
 // an active set: one is taken up when its node would pass its bound and let go when it would have to pull (the
-// conditions of Klar et al. 2016, section 8: G >= 0, reaction >= 0, and one of the two zero). Nodes that are
+// conditions of Klar et al. 2016, section 8: G >= 0, reaction >= 0, and one of the two zero). Of a node in a
+// corner the impulse is shared out along the normals of its walls, which need not be orthogonal. Nodes that are
 // held may rub (engine/implicit/coulomb.h).
 #pragma once
 
@@ -57,7 +58,7 @@ class ContactSet {
   void release(std::size_t block);
   /// Takes up contacts that v passes. Returns how many changed.
   int take_up(std::size_t block, const Real* v);
-  /// Lets contacts go whose J pulls.
+  /// Lets contacts go that pulled when v was evaluated last.
   int let_go(std::size_t block);
   /// Stops nodes that slip in v, evaluated last with the residual r, where friction would stop each by itself.
   /// Returns how many.
@@ -71,14 +72,20 @@ class ContactSet {
   std::int64_t directions() const;
 
  private:
+  struct Contact {
+    Hold<Real> hold;
+    bool active = false;
+    Real push = 0;  // its part of J along its normal, N s
+  };
   struct Node {
     int index = 0;
-    int rank = 0;      // directions held
-    Vector3 axis[3];   // orthonormal
-    Real value[3]{};   // v . axis
-    Vector3 reaction;  // J
-    std::vector<Hold<Real>> holds;
-    std::vector<std::uint8_t> active;  // per hold
+    int rank = 0;         // directions held
+    Vector3 axis[3];      // orthonormal
+    Real value[3]{};      // v . axis
+    Vector3 normal[3];    // by which each came in, and of which contact that is
+    int contact[3] = {};  // -1: of one that holds all
+    Vector3 reaction;     // J
+    std::vector<Contact> contacts;
     Friction<Real> evaluated, tangent;
   };
   /// What linear solves ask for in every iteration, without the rest of a node.
@@ -91,6 +98,7 @@ class ContactSet {
     std::vector<AtNode> rub, inverse;  // D, and Q (m + D)^-1 m
   };
   static void span(Node& node);
+  static void share_out(Node& node);
   static Vector3 along_walls(const Node& node, Vector3 x);
   static const Hold<Real>* rough(const Node& node);
   static Vector3 slip(const Node& node, const Hold<Real>& hold, const Real* v);

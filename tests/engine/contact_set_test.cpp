@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <random>
+#include <vector>
 
 namespace repose {
 namespace {
@@ -16,17 +20,25 @@ constexpr std::size_t kAt = kNode * kNodeValues + 1;
 /// A node of kMass against a wall that moves along itself.
 struct OneNode {
   explicit OneNode(Vec3 normal = Vec3(0.0, 1.0, 0.0),
+                   typename Hold<double>::Kind kind = Hold<double>::Kind::kAgainst)
+      : OneNode(std::vector<Vec3>{normal}, kind) {}
+  /// In a corner of several that move alike.
+  explicit OneNode(const std::vector<Vec3>& normals,
                    typename Hold<double>::Kind kind = Hold<double>::Kind::kAgainst) {
     contacts.clear(1);
-    Hold<double> hold;
-    hold.node = kNode;
-    hold.kind = kind;
-    normal.normalize();
-    std::copy_n(normal.data(), 3, hold.normal);
-    std::copy_n(wall.data(), 3, hold.velocity);
-    hold.bound = normal.dot(wall);
-    hold.friction = kFriction;
-    contacts.set_block(0, {hold});
+    std::vector<Hold<double>> holds;
+    for (const Vec3& any : normals) {
+      const Vec3 normal = any.normalized();
+      Hold<double> hold;
+      hold.node = kNode;
+      hold.kind = kind;
+      std::copy_n(normal.data(), 3, hold.normal);
+      std::copy_n(wall.data(), 3, hold.velocity);
+      hold.bound = normal.dot(wall);
+      hold.friction = kFriction;
+      holds.push_back(hold);
+    }
+    contacts.set_block(0, holds);
     masses[kNode * kNodeValues] = kMass;
     set_velocity(wall);
   }
@@ -71,6 +83,65 @@ TEST(ContactSet, Node_IsTakenUpWhereItPassesAndLetGoWhereItIsPulled) {
   node.bear(node.wall, Vec3(0.0, -3.0, 0.0));
   EXPECT_EQ(node.contacts.let_go(0), 1);
   EXPECT_EQ(node.contacts.directions(), 0);
+}
+
+/// Two walls 60 degrees apart: each pushes against the other's normal.
+const Vec3 kLeft(std::sqrt(0.75), 0.5, 0.0), kRight(-std::sqrt(0.75), 0.5, 0.0);
+
+TEST(ContactSet, InASharpCorner_WhatPushesIsKept) {
+  for (const auto& push : {std::array{1.0, 1.0}, std::array{1.0, 0.3}, std::array{0.3, 1.0}}) {
+    OneNode node(std::vector<Vec3>{kLeft, kRight});
+    node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+    EXPECT_EQ(node.contacts.take_up(0, node.velocities), 2);
+    node.contacts.obey(0, node.velocities);
+    EXPECT_NEAR(node.velocities[kAt], node.wall[0], 1e-12);
+    EXPECT_NEAR(node.velocities[kAt + 1], 0.0, 1e-12);
+    node.bear(node.wall, push[0] * kLeft + push[1] * kRight);
+    EXPECT_EQ(node.contacts.let_go(0), 0) << push[0] << " " << push[1];
+  }
+  OneNode node(std::vector<Vec3>{kLeft, kRight});
+  node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+  node.contacts.take_up(0, node.velocities);
+  node.bear(node.wall, kLeft - 0.1 * kRight);  // along kRight it is 0.6 against it
+  EXPECT_EQ(node.contacts.let_go(0), 1);
+  node.bear(node.wall, kLeft);
+  EXPECT_NEAR((node.reaction() - kLeft).norm(), 0.0, 1e-12) << "it is the other one that stays";
+}
+
+TEST(ContactSet, InASharpCorner_WhatWasJustTakenUpIsKept) {
+  OneNode node(std::vector<Vec3>{kLeft, kRight});
+  node.set_velocity(node.wall - 0.1 * kLeft);
+  EXPECT_EQ(node.contacts.take_up(0, node.velocities), 1);
+  node.bear(node.wall, kLeft);  // which pulls along kRight
+  node.set_velocity(node.wall - 0.1 * kRight);
+  EXPECT_EQ(node.contacts.take_up(0, node.velocities), 1);
+  EXPECT_EQ(node.contacts.let_go(0), 0);
+  EXPECT_EQ(node.contacts.directions(), 2);
+}
+
+TEST(ContactSet, InASharpCorner_BothWallsRubByWhatEachBears) {
+  OneNode node(std::vector<Vec3>{kLeft, kRight});
+  node.set_velocity(node.wall + Vec3(0.0, -0.1, 0.0));
+  node.contacts.take_up(0, node.velocities);
+  const Vec3 along(0.0, 0.0, 10.0);
+  for (int round = 0; round < 2; ++round) node.bear(node.wall + along, 1.0 * kLeft + 0.3 * kRight);
+  EXPECT_NEAR(std::abs(node.reaction()[2]), kFriction * 1.3, 1e-9);
+}
+
+TEST(ContactSet, WallsAFewDegreesApart_AreOne) {
+  for (const double degrees : {0.0, 2.0, 9.0, 12.0}) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const Vec3 up(0.0, 1.0, 0.0), tilted(std::sin(angle), std::cos(angle), 0.0);
+    OneNode node(std::vector<Vec3>{up, tilted});
+    node.set_velocity(node.wall - 0.1 * (up + tilted));
+    EXPECT_EQ(node.contacts.take_up(0, node.velocities), 2);
+    EXPECT_EQ(node.contacts.directions(), degrees > 10.0 ? 2 : 1) << degrees;
+    if (degrees > 10.0) continue;
+    const Vec3 along(10.0, 0.0, 0.0);
+    node.bear(node.wall + along, up);
+    EXPECT_EQ(node.contacts.let_go(0), 0) << degrees;
+    EXPECT_NEAR(std::abs(node.reaction()[0]), kFriction, 1e-9) << "they rub as one";
+  }
 }
 
 TEST(ContactSet, Friction_LiesInCoulombsConeAndOpposesSlip) {
