@@ -64,7 +64,7 @@ Result<Table> study_modes(const StudyArguments& arguments) {
                    {}}};
   if (auto added = add_explicit_rows(columns); !added) return added.error();
   for (const std::string& mode : arguments.modes_or(kAllModes)) {
-    for (const double step : arguments.steps_or({1e-4, 3e-4, 1e-3, 3e-3, 1e-2})) {
+    for (const double step : arguments.steps_or({1e-4, 3e-4, 1e-3, 1.7e-3, 3e-3, 1e-2})) {
       auto added = columns.add("`" + mode + "`", with_digits(step, 2), implicit_steps(mode, step));
       if (!added) return added.error();
     }

@@ -56,6 +56,7 @@ std::optional<double> FirstGuess<Real>::begin_at(Kind kind, Vector& dv) {
   const std::optional<double> foreseen = balance_.evaluate(dv);
   if (foreseen && *foreseen <= *norm) return foreseen;
   place(kind, dv);
+  balance_.forget_scale();
   return balance_.evaluate(dv);
 }
 

@@ -46,10 +46,7 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
   report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve(norm);
   report.linear = linear_;
   report.unknowns = 3 * static_cast<std::int64_t>(state.grid.active_nodes()) - contacts_.directions();
-  if (solved(report.newton.end)) {
-    guess_.keep(v_);
-    publish(v_);
-  }
+  if (solved(report.newton.end)) publish(v_);
   return report;
 }
 

@@ -32,6 +32,8 @@ class ImplicitStep {
   /// On return nodes hold what the passes that hold nodes are to start from: v less the impulse of their
   /// contacts, which those passes then bring about themselves, and record.
   ImplicitReport solve(State<Real>& state, Real dt);
+  /// The step that was solved last is made: the next begins from what it came to.
+  void accept() { guess_.keep(v_); }
 
   /// After a state was loaded: what was known of its topology may be of another.
   void forget() { orders_ = -1; }

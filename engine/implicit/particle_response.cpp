@@ -105,15 +105,16 @@ TangentInput<Real> ParticleResponse<Real>::input(std::size_t set, Chunk<Real>& c
   return in;
 }
 
-/// Where particles yield by numbers of their own, those are found, and the strain is what the passes that find
-/// them make of it.
+/// Runs the passes that stand before the return map: the strain is what they make of it, and where particles
+/// yield by numbers of their own, those are found.
 template <class Real>
 void ParticleResponse<Real>::find_surface(std::size_t set, Chunk<Real>& chunk, TangentInput<Real>& in) const {
   const SetResponse<Real>& response = plan_.sets[set];
-  if (!returns_ || !response.shaped) return;
+  if (!returns_ || response.surface.empty()) return;
   std::copy_n(in.material.strain, kStrainComponents, chunk.particles.strain);
   std::copy_n(in.material.gradient, kAffineComponents, chunk.moving_gradient);
   for (const auto& pass : response.surface) pass.run(chunk);
+  if (!response.shaped) return;
   auto& yield = chunk.scratch.yield;
   in.surface = {yield.cone.data(),    yield.cohesion.data(), yield.dilatancy.data(),
                 yield.plastic.data(), yield.sheared.data(),  yield.dilated.data()};

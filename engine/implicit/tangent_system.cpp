@@ -84,7 +84,13 @@ void TangentSystem<Real>::prepare() {
     });
     const Real* const nodes = sweep_.state().nodes.block(b);
     for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      if (nodes[at] > Real(0)) invert_block(nodes[at], diagonal_.block(b) + at + 1, side_.block(b) + at + 1);
+      Real *const d = diagonal_.block(b) + at, *const s = side_.block(b) + at;
+      if (nodes[at] > Real(0)) {
+        invert_block(nodes[at], d + 1, s + 1);
+      } else {  // what rounds to no mass may have some stiffness
+        std::fill_n(d, kNodeValues, Real(0));
+        std::fill_n(s, kNodeValues, Real(0));
+      }
     }
   });
 }

@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written as memory lies");
 
-constexpr char kMagic[16] = "REPOSE STATE 3\n";
+constexpr char kMagic[16] = "REPOSE STATE 4\n";
 
 struct ChunkHead {
   char name[16] = {};

@@ -40,12 +40,14 @@ class GeneralizedConjugateResidual {
     watch.begin(true_residual(system, b, x, r_, z_));
     std::size_t made = 0;
     bool leads = true;
+    blind_ = 0;
     while (!watch.ended()) {
       leads = iterate(system, x, watch, leads ? z_ : s_, made++);
       if (!watch.doubts()) continue;
       watch.correct(true_residual(system, b, x, r_, z_));
       made = 0;
       leads = true;
+      blind_ = 0;
     }
     return watch.report();
   }

@@ -39,7 +39,7 @@ enum class NewtonEnd {
   kIterations,  ///< the cap was met
   kNoDescent,   ///< no length along the step lowers the residual, or the energy
   kUnsolved,    ///< the linear solver gave up
-  kUndefined,   ///< the residual has no value at the start
+  kUndefined,   ///< the residual has no value at the start, or after contacts changed
 };
 constexpr bool solved(NewtonEnd end) {
   return end == NewtonEnd::kConverged || end == NewtonEnd::kStalled;

@@ -58,7 +58,7 @@ struct State {
 
   BlockGrid grid;
   NodeField<Real> nodes;                    ///< mass and momentum, then mass and v-bar
-  NodeField<Real> before_forces;            ///< mass and velocity before forces, for transfers that ask for it
+  NodeField<Real> before_forces;            ///< mass and v^n, where a transfer or an implicit step asks for it
   SparseNodeField<Real> after_friction;     ///< mass and v-tilde, in blocks where there is friction
   LastMotion<Real> last_motion;             ///< where steps are implicit; saved
   std::vector<std::uint64_t> rows_touched;  ///< per owner: arena rows that its particles reach

@@ -26,7 +26,7 @@ std::string unsolved_text(const ImplicitReport& report) {
     case NewtonEnd::kUnsolved:
       return std::string("the linear solver gave up (") + status_name(report.linear) + ")";
     case NewtonEnd::kUndefined:
-      return "the residual has no value where it starts";
+      return "the residual has no value where it starts, or where contacts put it";
   }
   return "";
 }

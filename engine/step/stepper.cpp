@@ -60,6 +60,7 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
       if (report.redone == 0) report.first_refusal = refusal_text(*report.offender);
       continue;
     }
+    if (implicit_) implicit_->accept();
     gather(state, dt);
     finish(state, dt);
     state.counters.last_dt = report.dt;

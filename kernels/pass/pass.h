@@ -51,12 +51,12 @@ struct ScatterInput {
   Lattice<Real> lattice;
 };
 
-/// Numbers of the same particles that the next pass reads: a pass that computes much and reads little asks
-/// memory for them. No values: nothing to ask for.
+/// What the next pass reads, values * count numbers from `from` on: a pass that computes much and reads little
+/// asks memory for it, as many with each particle. No values: nothing to ask for.
 template <class Real>
 struct Soon {
   const Real* from = nullptr;
-  std::size_t values = 0;  ///< a particle, all of one pack of particles before those of the next
+  std::size_t values = 0;  ///< a particle
 };
 
 /// Nodes to particles. What is a null pointer is not wanted; a pointer may be that of the particles' own
