@@ -1,4 +1,5 @@
 #include "tests/apps/command_probe.h"
+#include "tests/file_bytes.h"
 
 #include <fcntl.h>
 #include <json/reader.h>
@@ -6,15 +7,9 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <iterator>
 
 namespace repose {
 namespace {
-
-std::string text_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// In the child: standard output into the pipe, standard error into a file, then the program.
 [[noreturn]] void become(const std::vector<std::string>& words, int out, const std::string& err) {
@@ -82,7 +77,7 @@ Finished CommandTest::run_program(std::vector<std::string> words, const LineCall
   int status = 0;
   waitpid(process, &status, 0);
   finished.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  finished.err = text_of(path("stderr"));
+  finished.err = bytes_of(path("stderr"));
   return finished;
 }
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 
 #include "tests/apps/command_probe.h"
+#include "tests/file_bytes.h"
 
 namespace repose {
 namespace {
@@ -122,8 +122,7 @@ TEST_F(CommandRun, AttributesSurfaceAndFog_AreWrittenWhereAsked) {
       tiny_scene(R"(, "output": {"vtp": true, "attributes": ["stress", "density"], "surface": {}, "fog": {}})");
   ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "2", "--quiet"}).code, 0);
   EXPECT_EQ(files_with(path("out"), ".vdb"), 6u);
-  std::ifstream file(path("out/tiny.points.0001.vtp"), std::ios::binary);
-  const std::string vtp{std::istreambuf_iterator<char>(file), {}};
+  const std::string vtp = bytes_of(path("out/tiny.points.0001.vtp"));
   EXPECT_THAT(vtp, HasSubstr("Name=\"stress\" NumberOfComponents=\"6\""));
   const Finished info = repose({"info", path("out/tiny.points.0002.vdb"), path("out/tiny.surface.0002.vdb"),
                                 path("out/tiny.fog.0002.vdb")});
@@ -151,8 +150,7 @@ TEST_F(CommandRun, SurfaceOfOneAndTwoThreads_SameBytes) {
   }
   for (const char* name : {"points", "surface", "fog"}) {
     const auto bytes = [&](const std::string& folder) {
-      std::ifstream file(path(folder + "/tiny." + name + ".0002.vdb"), std::ios::binary);
-      return std::string{std::istreambuf_iterator<char>(file), {}};
+      return bytes_of(path(folder + "/tiny." + name + ".0002.vdb"));
     };
     EXPECT_GT(bytes("1").size(), 1000u);
     EXPECT_EQ(bytes("1"), bytes("2")) << name;

@@ -3,11 +3,11 @@
 #include <signal.h>
 
 #include <chrono>
-#include <fstream>
 #include <thread>
 #include <utility>
 
 #include "tests/apps/command_probe.h"
+#include "tests/file_bytes.h"
 
 namespace repose {
 namespace {
@@ -55,9 +55,7 @@ TEST_F(Runs, InterruptedAndResumed_EndWithTheBitsOfOneThatWasNot) {
     EXPECT_EQ(parts["frames"][k]["hash"], whole["frames"][k]["hash"]) << "frame " << k + 1;
   }
   const std::string last = "/tiny.points.0012.vdb";
-  std::ifstream a(path("whole") + last, std::ios::binary), b(path("parts") + last, std::ios::binary);
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(a), {}),
-            std::string(std::istreambuf_iterator<char>(b), {}));
+  EXPECT_EQ(bytes_of(path("whole") + last), bytes_of(path("parts") + last));
   EXPECT_EQ(read_json(path("parts/tiny.points.vtp.series"))["files"].size(), 12u);
 }
 

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "engine/state/state_hash.h"
+#include "tests/file_bytes.h"
 
 namespace repose {
 namespace {
@@ -97,10 +97,7 @@ class Checkpoint : public ::testing::Test {
     EXPECT_FALSE(loaded);
     return loaded ? Error{} : loaded.error();
   }
-  std::string bytes() const {
-    std::ifstream file(path(), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string bytes() const { return bytes_of(path()); }
   void rewrite(const std::string& text) const { std::ofstream(path(), std::ios::binary) << text; }
 
   fs::path folder_;

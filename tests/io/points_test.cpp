@@ -15,6 +15,7 @@
 
 #include "engine/io/atomic_file.h"
 #include "engine/io/point_cloud.h"
+#include "tests/file_bytes.h"
 
 namespace repose {
 namespace {
@@ -90,11 +91,6 @@ void expect_same(const PointCloud& want, const PointCloud& have, double toleranc
       ASSERT_EQ(w.values[a[i / n] * n + i % n], h.values[b[i / n] * n + i % n]) << w.name;
     }
   }
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 void put_bytes(const std::string& path, const std::string& bytes) {

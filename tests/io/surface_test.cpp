@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "engine/geometry/seeding.h"
 #include "engine/geometry/solids.h"
 #include "engine/io/surface.h"
+#include "tests/file_bytes.h"
 
 namespace repose {
 namespace {
@@ -61,11 +61,6 @@ PointCloud cloud_of(const Shape& shape, const SeedOptions& options, double densi
 
 SurfaceOptions surface_options() {
   return {.voxel = 0.5 * kSpacing, .radius = kSpacing, .smoothing = 2, .flat_axis = {}};
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 /// A grid of a file, read by OpenVDB itself.
