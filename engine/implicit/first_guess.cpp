@@ -49,14 +49,17 @@ void FirstGuess<Real>::follow_blocks() {
 /// here saves an iteration of Newton's method.
 template <class Real>
 std::optional<double> FirstGuess<Real>::begin_at(Kind kind, Vector& dv) {
-  place(kind, dv);
-  balance_.forget_scale();  // of another guess, that may be far off
-  const std::optional<double> norm = balance_.evaluate(dv);
+  const std::optional<double> norm = evaluate_at(kind, dv);
   if (!norm || *norm <= kGood * balance_.scale() || !foresee_contacts(dv)) return norm;
   const std::optional<double> foreseen = balance_.evaluate(dv);
   if (foreseen && *foreseen <= *norm) return foreseen;
+  return evaluate_at(kind, dv);
+}
+
+template <class Real>
+std::optional<double> FirstGuess<Real>::evaluate_at(Kind kind, Vector& dv) {
   place(kind, dv);
-  balance_.forget_scale();
+  balance_.forget_scale();  // of another guess, that may be far off
   return balance_.evaluate(dv);
 }
 

@@ -39,6 +39,7 @@ class FirstGuess {
 
   void follow_blocks();
   std::optional<double> begin_at(Kind kind, Vector& dv);
+  std::optional<double> evaluate_at(Kind kind, Vector& dv);
   void place(Kind kind, Vector& dv);
   bool foresee_contacts(Vector& dv);
 
