@@ -108,12 +108,12 @@ TangentInput<Real> ParticleResponse<Real>::input(std::size_t set, Chunk<Real>& c
 /// Runs the passes that stand before the return map: the strain is what they make of it, and where particles
 /// yield by numbers of their own, those are found.
 template <class Real>
-void ParticleResponse<Real>::find_surface(std::size_t set, Chunk<Real>& chunk, TangentInput<Real>& in) const {
+void ParticleResponse<Real>::prepare_return(std::size_t set, Chunk<Real>& chunk, TangentInput<Real>& in) const {
   const SetResponse<Real>& response = plan_.sets[set];
-  if (!returns_ || response.surface.empty()) return;
+  if (!returns_ || response.before_return.empty()) return;
   std::copy_n(in.material.strain, kStrainComponents, chunk.particles.strain);
   std::copy_n(in.material.gradient, kAffineComponents, chunk.moving_gradient);
-  for (const auto& pass : response.surface) pass.run(chunk);
+  for (const auto& pass : response.before_return) pass.run(chunk);
   if (!response.shaped) return;
   auto& yield = chunk.scratch.yield;
   in.surface = {yield.cone.data(),    yield.cohesion.data(), yield.dilatancy.data(),
@@ -129,7 +129,7 @@ TangentInput<Real> ParticleResponse<Real>::at_trial(std::size_t set, Chunk<Real>
   std::copy_n(trial.gradient, kAffineComponents, in.material.gradient);
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(trial.strain[k], in.material.count, in.material.strain[k]);
-  find_surface(set, chunk, in);
+  prepare_return(set, chunk, in);
   return in;
 }
 
@@ -145,7 +145,7 @@ TangentInput<Real> ParticleResponse<Real>::at_rate(std::size_t set, Chunk<Real>&
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(chunk.particles.strain[k], in.material.count, in.material.strain[k]);
   plan_.sets[set].kernels.trial(in.material);
-  find_surface(set, chunk, in);
+  prepare_return(set, chunk, in);
   return in;
 }
 

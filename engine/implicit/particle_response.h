@@ -64,7 +64,7 @@ class ParticleResponse {
   Model model_of(std::size_t set, const Chunk<Real>& chunk);
   void try_strain(std::size_t set, Chunk<Real>& chunk);
   TangentInput<Real> input(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
-  void find_surface(std::size_t set, Chunk<Real>& chunk, TangentInput<Real>& in) const;
+  void prepare_return(std::size_t set, Chunk<Real>& chunk, TangentInput<Real>& in) const;
   TangentInput<Real> at_trial(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
   TangentInput<Real> at_rate(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
   TangentInput<Real> place_model(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own, bool near,

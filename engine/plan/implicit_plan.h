@@ -75,15 +75,15 @@ struct HoldPass {
   std::function<void(const NodeBlock<Real>&, std::vector<Hold<Real>>&)> run;
 };
 
-/// How a set answers: its material's kernels, and the passes that put the numbers by which its particles yield
-/// into Scratch::yield, from the trial strain; the return map comes after them.
+/// How a set answers: its material's kernels, and the passes between trial strain and return map, which change
+/// that strain and put the numbers by which particles yield into Scratch::yield.
 template <class Real>
 struct SetResponse {
   MaterialKernels<Real> kernels;
   std::shared_ptr<const void> constants;
   UnilateralConstants<Real> unilateral{};
   bool shaped = false;  ///< whether particles yield by numbers of their own
-  std::vector<ParticlePass<Real>> surface{};
+  std::vector<ParticlePass<Real>> before_return{};
 };
 
 template <class Real>

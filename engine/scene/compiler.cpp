@@ -171,7 +171,7 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
           {material.kernels, material.constants, unilateral_of<Real>(scene, description.elasticity())});
     }
     if (!description.yields()) continue;
-    const std::size_t surface = passes.size();
+    const std::size_t before_return = passes.size();
     bool shaped = false;
     for_each_effect(compilation.effects, [&](const auto& effect) {
       shaped = shaped || (effect.on() && effect.shapes_yield(compilation.sets[k]));
@@ -182,8 +182,8 @@ StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Re
                     ask([&](const auto& effect) { effect.add_before_return(assembly, k); }));
     if (implicit) {
       plan.implicit->sets.back().shaped = shaped;
-      plan.implicit->sets.back().surface.assign(passes.begin() + static_cast<std::ptrdiff_t>(surface),
-                                                passes.end());
+      plan.implicit->sets.back().before_return.assign(
+          passes.begin() + static_cast<std::ptrdiff_t>(before_return), passes.end());
     }
     passes.push_back(shaped ? project_shaped_pass(material) : project_pass(material));  // to the yield surface
     for_each_effect_reversed(compilation.effects,
