@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <set>
 
 #include "engine/scene/compiler.h"
 #include "engine/step/stepper.h"
+#include "tests/file_bytes.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {
@@ -90,32 +90,36 @@ TEST(Implicit, FreeFall_IsThatOfTheVelocityAtTheEnd) {
   EXPECT_NEAR(fallen, 9.81 * dt * dt * kSteps * (kSteps + 1) / 2.0, 1e-12);
 }
 
-// Evaluations and steps that are refused wet nothing.
-TEST(Implicit, Wetting_WetsOnceInAStep) {
-  auto compiled = compile_scene<float>(
-      column({R"(materials.sand.moisture={"cohesion_change": 1000})",
-              R"(wetting=[{"name": "rain", "rate": 2, "shape": {"type": "plane", "point": [0, 1, 0]}}])"}),
-      {});
-  ASSERT_TRUE(compiled);
+/// The state after so many steps; visit(report) of each.
+template <class Visit>
+State<float> state_after(int steps, const Scene& scene, Visit visit) {
+  auto compiled = compile_scene<float>(scene, {});
+  EXPECT_TRUE(compiled) << (compiled ? "" : compiled.error().text());
   State<float> state = std::move(compiled->state);
   Stepper<float> stepper(std::move(compiled->plan), 1);
+  for (int k = 0; k < steps; ++k) {
+    const StepReport step = stepper.step(state, std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(step.accepted && step.implicit);
+    visit(step);
+  }
+  return state;
+}
+
+// Evaluations and steps that are refused wet nothing.
+TEST(Implicit, Wetting_WetsOnceInAStep) {
+  const Scene rain =
+      column({R"(materials.sand.moisture={"cohesion_change": 1000})",
+              R"(wetting=[{"name": "rain", "rate": 2, "shape": {"type": "plane", "point": [0, 1, 0]}}])"});
   int iterations = 0;
   double time = 0.0;
-  for (int k = 0; k < 60; ++k) {
-    const StepReport step = stepper.step(state, std::numeric_limits<double>::infinity());
-    ASSERT_TRUE(step.accepted && step.implicit);
+  const State<float> state = state_after(60, rain, [&](const StepReport& step) {
     iterations += step.implicit->newton.iterations;
     time += step.dt;
-  }
+  });
   EXPECT_GT(iterations, 60);
   const auto& set = state.sets.front();
   const auto& wet = set.extra[set.extra_index("saturation")].values;
   for (std::size_t p = 0; p < set.count; ++p) ASSERT_NEAR(wet.data()[p], 2.0 * time, 1e-5);
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// Runs of 16 steps with other numbers of threads, and one that is saved and loaded on the way, end in the bits
@@ -149,13 +153,7 @@ void expect_same_bits(const std::vector<std::string>& overrides) {
 // By this a step knows whether it may begin at the velocities of the last one.
 TEST(Implicit, WhatVelocitiesGainOfTheImpulses_IsAllInAFallNothingAtRest) {
   const auto gained = [](std::vector<std::string> overrides, int steps) {
-    auto compiled = compile_scene<float>(column(std::move(overrides)), {});
-    EXPECT_TRUE(compiled);
-    State<float> state = std::move(compiled->state);
-    Stepper<float> stepper(std::move(compiled->plan), 1);
-    for (int k = 0; k < steps; ++k)
-      EXPECT_TRUE(stepper.step(state, std::numeric_limits<double>::infinity()).accepted);
-    return state.last_motion.gained;
+    return state_after(steps, column(std::move(overrides)), [](const StepReport&) {}).last_motion.gained;
   };
   EXPECT_EQ(gained({"colliders=[]"}, 1), 0.0) << "there is no last velocity in the first step";
   EXPECT_NEAR(gained({"colliders=[]"}, 2), 1.0, 0.02);
