@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
+#include "kernels/base/matrix_arrays.h"
 #include "kernels/material/materials.h"
 #include "kernels/pass/tables.h"
 
@@ -13,22 +14,6 @@ HWY_BEFORE_NAMESPACE();
 namespace repose {
 namespace HWY_NAMESPACE {
 namespace {
-
-template <class T>
-REPOSE_INLINE Sym3<Pack<T>> load_sym3(T* const from[6], std::size_t first, std::size_t lanes) {
-  const auto entry = [&](int k) HWY_ATTR { return Pack<T>::load_first(from[k] + first, lanes); };
-  return {entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
-}
-
-template <class T>
-REPOSE_INLINE void store_sym3(const Sym3<Pack<T>>& a, T* const to[6], std::size_t first, std::size_t lanes) {
-  a.xx.store_first(to[0] + first, lanes);
-  a.xy.store_first(to[1] + first, lanes);
-  a.xz.store_first(to[2] + first, lanes);
-  a.yy.store_first(to[3] + first, lanes);
-  a.yz.store_first(to[4] + first, lanes);
-  a.zz.store_first(to[5] + first, lanes);
-}
 
 template <class T>
 REPOSE_INLINE void prefetch_strain(const MaterialInput<T>& in, std::size_t first) {

@@ -252,7 +252,7 @@ struct Kernels {
                   Real* cone, std::size_t count);
   /// strain <- its image where no principal stress exceeds `limit` (Pa): Rankine's tension cut-off, by flow
   /// along the principal directions that exceed it. A crack is no gap on all sides: by how much it opens is
-  /// taken from `trace_of_trial`, so that close_volume does not count it.
+  /// taken from `trace_of_trial`, so that close_volume does not count it; null where nobody closes.
   void (*cut_tension)(Real* const strain[6], const HenckyConstants<Real>& elastic, Real limit,
                       Real* trace_of_trial, std::size_t count);
   void (*close_volume)(const Real* const strain[6], Real* gained, const Real* trace, std::size_t count);

@@ -12,6 +12,7 @@
 #include "kernels/base/targets.h"
 
 #include "kernels/base/eigen_sym3.h"
+#include "kernels/base/matrix_arrays.h"
 #include "kernels/material/drucker_prager_response.h"
 #include "kernels/material/materials.h"
 #include "kernels/material/response.h"
@@ -42,21 +43,6 @@ REPOSE_INLINE Mat3<N> inverse(const Mat3<N>& a) {
   return out;
 }
 
-/// Rows of a matrix of packs from nine arrays.
-template <class T>
-REPOSE_INLINE Mat3<Pack<T>> load_mat3(const T* const from[9], std::size_t first, std::size_t lanes) {
-  Mat3<Pack<T>> a;
-  HWY_UNROLL(9)
-  for (int k = 0; k < 9; ++k) a.m[k / 3][k % 3] = Pack<T>::load_first(from[k] + first, lanes);
-  return a;
-}
-
-template <class T>
-REPOSE_INLINE void store_mat3(const Mat3<Pack<T>>& a, T* const to[9], std::size_t first, std::size_t lanes) {
-  HWY_UNROLL(9)
-  for (int k = 0; k < 9; ++k) a.m[k / 3][k % 3].store_first(to[k] + first, lanes);
-}
-
 /// I + dt grad v
 template <class T>
 REPOSE_INLINE Mat3<Pack<T>> load_map(const T* const gradient[9], T dt, std::size_t first, std::size_t lanes) {
@@ -71,21 +57,18 @@ REPOSE_INLINE Mat3<Pack<T>> load_map(const T* const gradient[9], T dt, std::size
 /// matrix <- tau (I + dt grad v)^-T; whether no det(I + dt grad v) is nearly zero or less.
 template <class T>
 bool turn(const T* const stress[6], const T* const gradient[9], T dt, T* const matrix[9], std::size_t count) {
-  static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   bool upright = true;
   for (const auto [first, lanes] : packs<T>(count)) {
     const Mat3<Pack<T>> map = load_map<T>(gradient, dt, first, lanes), back = inverse(map);
     upright = upright && !any(!(determinant(map) > Pack<T>(T(kLeastDeterminant))));
-    Pack<T> tau[6];
-    HWY_UNROLL(6)
-    for (int k = 0; k < 6; ++k) tau[k] = Pack<T>::load_first(stress[k] + first, lanes);
+    const Sym3<Pack<T>> t = load_sym3<T>(stress, first, lanes);
+    const Pack<T> tau[3][3] = {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
     Mat3<Pack<T>> s;
     HWY_UNROLL(3)
     for (int r = 0; r < 3; ++r) {
       HWY_UNROLL(3)
       for (int c = 0; c < 3; ++c) {
-        s.m[r][c] = fma(tau[kSymmetric[r][0]], back.m[c][0],
-                        fma(tau[kSymmetric[r][1]], back.m[c][1], tau[kSymmetric[r][2]] * back.m[c][2]));
+        s.m[r][c] = fma(tau[r][0], back.m[c][0], fma(tau[r][1], back.m[c][1], tau[r][2] * back.m[c][2]));
       }
     }
     store_mat3(s, matrix, first, lanes);
@@ -138,8 +121,7 @@ void linearize(const TangentInput<T>& in) {
   using P = Pack<T>;
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.material.constants);
   for (const auto [first, lanes] : packs<T>(in.material.count)) {
-    const auto entry = [&](int k) HWY_ATTR { return P::load_first(in.material.strain[k] + first, lanes); };
-    const Eigen3<P> axes = eigen_sym3(Sym3<P>{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)});
+    const Eigen3<P> axes = eigen_sym3(load_sym3<T>(in.material.strain, first, lanes));
     Response<P> response;
     if constexpr (!Material::Parameters::kYields) {
       response = Material::respond(constants, axes.value);
@@ -173,8 +155,7 @@ void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const off
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.material.constants);
   const P theta(kTheta), per_theta(T(1) / kTheta), share(T(1) / (T(1) + kTheta)), half(T(0.5));
   for (const auto [first, lanes] : packs<T>(in.material.count)) {
-    const auto entry = [&](int k) HWY_ATTR { return P::load_first(in.material.strain[k] + first, lanes); };
-    const Sym3<P> trial{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+    const Sym3<P> trial = load_sym3<T>(in.material.strain, first, lanes);
     const Mat3<P> map = load_map<T>(in.material.gradient, in.material.dt, first, lanes);
     const Mat3<P> s = load_mat3<T>(foretold, first, lanes);
     const auto product = [&](int r, int c) HWY_ATTR {
@@ -214,9 +195,7 @@ void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const off
         change.m[r][c] = fma(d[r][0], map.m[0][c], fma(d[r][1], map.m[1][c], d[r][2] * map.m[2][c]));
     }
     store_mat3(change, offset, first, lanes);
-    const P all[6] = {point.xx, point.xy, point.xz, point.yy, point.yz, point.zz};
-    HWY_UNROLL(6)
-    for (int k = 0; k < 6; ++k) all[k].store_first(in.material.strain[k] + first, lanes);
+    store_sym3<T>(point, in.material.strain, first, lanes);
   }
 }
 
@@ -225,13 +204,8 @@ template <class Material, class T>
 void fading_stress(const MaterialInput<T>& in, const UnilateralConstants<T>& unilateral) {
   const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
   for (const auto [first, lanes] : packs<T>(in.count)) {
-    const auto entry = [&](int k) HWY_ATTR { return Pack<T>::load_first(in.strain[k] + first, lanes); };
-    const auto tau =
-        unilateral_stress(constants.elastic, unilateral,
-                          Sym3<Pack<T>>{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)});
-    const Pack<T> all[6] = {tau.xx, tau.xy, tau.xz, tau.yy, tau.yz, tau.zz};
-    HWY_UNROLL(6)
-    for (int k = 0; k < 6; ++k) all[k].store_first(in.stress[k] + first, lanes);
+    const auto strain = load_sym3<T>(in.strain, first, lanes);
+    store_sym3<T>(unilateral_stress(constants.elastic, unilateral, strain), in.stress, first, lanes);
   }
 }
 

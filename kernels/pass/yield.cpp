@@ -8,7 +8,7 @@
 
 #include "kernels/base/eigen_sym3.h"
 #include "kernels/base/elementary.h"
-#include "kernels/base/small_matrix.h"
+#include "kernels/base/matrix_arrays.h"
 #include "kernels/pass/tables.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -57,9 +57,7 @@ void quicken(const T* const strain[6], const T* cohesion, const RateConstants<T>
   using P = Pack<T>;
   const P zero(T(0)), tiny(std::numeric_limits<T>::min()), threshold(law.threshold), rise(law.rise);
   for (const auto [first, lanes] : packs<T>(count)) {
-    const auto entry = [first = first, lanes = lanes, strain](int k)
-                           HWY_ATTR { return P::load_first(strain[k] + first, lanes); };
-    const Sym3<P> eps{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+    const Sym3<P> eps = load_sym3<T>(strain, first, lanes);
     const P t = trace(eps);
     const P size = max(-t, tiny);
     const P n = sqrt(square_norm(plus_identity(eps, -(t * P(T(1) / 3)))));
@@ -85,9 +83,7 @@ void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit,
   const T lambda = elastic.lambda, twice_mu = elastic.mu + elastic.mu;
   const P allowed(limit), apex(limit / (T(3) * lambda + twice_mu));
   for (const auto [first, lanes] : packs<T>(count)) {
-    const auto entry = [first = first, lanes = lanes, strain](int k)
-                           HWY_ATTR { return P::load_first(strain[k] + first, lanes); };
-    const Sym3<P> eps{entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+    const Sym3<P> eps = load_sym3<T>(strain, first, lanes);
     const P t = trace(eps);
     // No principal strain exceeds the norm: most packs need no eigenvalues.
     if (!any(fma(P(twice_mu), sqrt(square_norm(eps)), P(lambda) * t) > allowed)) continue;
@@ -101,11 +97,11 @@ void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit,
     HWY_UNROLL(3)
     for (P& value : eigen.value) value = min(value, most);
     const Sym3<P> cut = select(exceeds, compose(eigen), eps);
-    (P::load_first(trace_of_trial + first, lanes) - (t - trace(cut)))
-        .store_first(trace_of_trial + first, lanes);
-    const P* const entries[] = {&cut.xx, &cut.xy, &cut.xz, &cut.yy, &cut.yz, &cut.zz};
-    HWY_UNROLL(6)
-    for (int k = 0; k < 6; ++k) entries[k]->store_first(strain[k] + first, lanes);
+    if (trace_of_trial != nullptr) {
+      (P::load_first(trace_of_trial + first, lanes) - (t - trace(cut)))
+          .store_first(trace_of_trial + first, lanes);
+    }
+    store_sym3<T>(cut, strain, first, lanes);
   }
 }
 
