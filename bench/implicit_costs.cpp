@@ -5,6 +5,7 @@
 #include <ctime>
 #include <limits>
 
+#include "engine/plan/frame_clock.h"
 #include "engine/scene/compiler.h"
 #include "engine/scene/reader.h"
 #include "engine/step/stepper.h"
@@ -48,7 +49,7 @@ Result<double> advance(Stepper<float>& stepper, State<float>& state) {
     const std::string why = report.offender ? refusal_text(*report.offender) : report.first_refusal;
     return Error{ErrorKind::kPhysics, "a step was refused: " + why, "implicit_costs"};
   }
-  state.counters.time += report.dt;
+  FrameClock::advance_freely(state.counters, report.dt);
   return report.dt;
 }
 
@@ -68,7 +69,7 @@ Result<double> time_steps(const ImplicitCostArguments& arguments, double youngs_
   }
   state.last_motion.on = true;
   Stepper<float> large(std::move(solving->plan), 1);
-  large.follow(state);
+  if (auto followed = large.follow(state); !followed) return followed.error();
   if (auto first = advance(large, state); !first) return first.error();  // it knows no motion to begin from
   double made = 0.0, seconds = 0.0;
   const double start = processor_time();

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <iterator>
 
+#include "apps/repose/measure.h"
+
 namespace repose {
 
 int fail(const Error& error) {
@@ -27,6 +29,13 @@ Result<SimulationOptions> simulation_options(const SceneArguments& arguments) {
   SimulationOptions options;
   options.threads = arguments.threads;
   options.allow_outside_paths = arguments.allow_outside_paths;
+  if (arguments.memory > 0) {
+    const double left = static_cast<double>(arguments.memory) - static_cast<double>(resident_bytes());
+    if (left <= 0.0)
+      return Error{ErrorKind::kUsage, "is less than the program itself takes; 100MB is little, 2GB is usual",
+                   "--memory"};
+    options.memory_limit = left;
+  }
   if (arguments.target.empty()) return options;
   for (int k = 0; k < kTargets; ++k) {
     if (arguments.target == target_name(static_cast<Target>(k))) {

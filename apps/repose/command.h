@@ -17,8 +17,9 @@ struct SceneArguments {
   std::vector<std::string> set;  ///< --set a.b=value
   std::string quality = kQualityNames[static_cast<int>(Quality::kStandard)];
   bool allow_outside_paths = false;
-  int threads = 0;     ///< 0: all
-  std::string target;  ///< avx512, avx2, baseline; empty: the best
+  int threads = 0;           ///< 0: all
+  std::string target;        ///< avx512, avx2, baseline; empty: the best
+  std::uint64_t memory = 0;  ///< bytes that may be used; 0: 85 % of the machine's
 };
 
 struct RunArguments {
@@ -58,7 +59,7 @@ int fail(const Error& error);
 
 /// Reads the scene that the arguments name.
 Result<Scene> read_scene(const SceneArguments& arguments);
-/// Options for the engine; error 64 for an unknown or unsupported target.
+/// Options for the engine; error 64 for an unknown or unsupported target, or too little --memory.
 Result<SimulationOptions> simulation_options(const SceneArguments& arguments);
 
 }  // namespace repose

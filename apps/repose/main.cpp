@@ -2,6 +2,8 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <thread>
 
@@ -22,6 +24,12 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_flag("--allow-outside-paths", arguments.allow_outside_paths,
                    "allow meshes outside the scene's folder");
   command.add_option("--threads", arguments.threads, "threads (default: all)")->check(CLI::Range(1, 1024));
+  command
+      .add_option(
+          "--memory", arguments.memory,
+          "what may be used, such as 2GB (default: 85 % of the machine's); a run that would need more ends "
+          "with its state saved")
+      ->transform(CLI::AsSizeValue(true));
   command
       .add_option("--target", arguments.target, "instruction set: avx512, avx2, baseline (default: the best)")
       ->envname("REPOSE_TARGET");
@@ -140,5 +148,9 @@ int main(int count, char** words) {
 }  // namespace repose
 
 int main(int count, char** words) {
+  // What is given back is given back: else memory that setting up took would stay, and no forecast could be
+  // true.
+  mallopt(M_MMAP_THRESHOLD, 1 << 18);
+  mallopt(M_TRIM_THRESHOLD, 1 << 20);
   return repose::main(count, words);
 }

@@ -1,4 +1,6 @@
 // Repose: `repose plan`: what a scene would do, before it does it.
+#include <malloc.h>
+
 #include <algorithm>
 #include <cstdio>
 
@@ -16,14 +18,25 @@ std::string join(const std::vector<std::string>& words, const char* between = ",
   return text;
 }
 
+/// "reads cone, strain"; empty where there is none.
+std::string listed(const char* verb, const std::vector<HandleInfo>& handles) {
+  std::vector<std::string> names;
+  for (const HandleInfo& handle : handles) names.emplace_back(handle.name);
+  return names.empty() ? "" : verb + join(names);
+}
+
 void print_passes(const Simulation& simulation) {
   std::printf("\nstep\n");
   std::string phase;
   for (const auto& [where, pass] : simulation.passes()) {
     if (where != phase) std::printf("  %s\n", where.c_str());
     phase = where;
-    std::printf("    %-26s reads %s; writes %s%s%s\n", pass.name.c_str(), join(pass.reads).c_str(),
-                join(pass.writes).c_str(), pass.reason.empty() ? "" : "   <- ", pass.reason.c_str());
+    std::vector<std::string> what;
+    for (const std::string& part : {listed("reads ", pass.reads), listed("writes ", pass.writes)}) {
+      if (!part.empty()) what.push_back(part);
+    }
+    std::printf("    %-26s %s%s%s\n", pass.name.c_str(), join(what, "; ").c_str(),
+                pass.reason.empty() ? "" : "   <- ", pass.reason.c_str());
   }
 }
 
@@ -59,34 +72,40 @@ void print_effects(const Scene& scene, const Simulation& simulation) {
   std::printf("  bytes and time are per particle, time per step on one core, about\n");
 }
 
-/// Memory, in the parts that it is made of. What setting up took at its peak has been seen; what steps will add
-/// is the grid's growth. `process` bytes were there before.
-void print_memory(const Simulation& simulation, double process, double emission) {
+/// Memory, in the parts that it is made of. What setting up took at its peak has been seen, and so has what
+/// lies there now, with room for the first step; what steps will add is the grid's growth, and what writing a
+/// frame takes comes and goes.
+void print_memory(const Simulation& simulation, double emission) {
+  malloc_trim(0);
   const MemoryUse memory = simulation.memory();
-  const auto particles = static_cast<double>(memory.particle_bytes),
-             order = static_cast<double>(memory.order_bytes),
-             scratch = static_cast<double>(memory.scratch_bytes), grid = static_cast<double>(memory.grid_bytes);
-  const double growth = grid;  // material that spreads: room for twice the blocks
-  const double running = process + particles + order + scratch + grid + growth + emission;
+  const auto total = static_cast<double>(memory.total()), now = static_cast<double>(resident_bytes());
+  const auto growth =
+      static_cast<double>(memory.growing_bytes);  // material that spreads: room for twice the blocks
+  const double writing = simulation.writing_bytes();
+  const double running = now + growth + writing + emission;
   const auto setting_up = static_cast<double>(peak_rss_bytes());
-  const auto line = [](const char* what, double bytes, const char* more) {
-    std::printf("    %-18s%8.1f MB%s\n", what, 1e-6 * bytes, more);
+  const auto line = [](const char* what, double bytes, const std::string& more) {
+    std::printf("    %-18s%8.1f MB%s\n", what, 1e-6 * bytes, more.c_str());
   };
-  char blocks[64];
-  std::snprintf(blocks, sizeof blocks, "   %zu blocks at the start", memory.blocks);
+  const auto part = [&line](const char* what, std::size_t bytes, const std::string& more) {
+    if (bytes > 0) line(what, static_cast<double>(bytes), more);
+  };
   std::printf("  memory              %.1f MB at the peak\n", 1e-6 * std::max(running, setting_up));
-  line("setting up", setting_up, "   measured; all of the below but growth, and the seeds");
+  line("setting up", setting_up, "   measured; all of the below but growth and writing, and the seeds");
   line("running", running, "   the sum of");
-  line("  process", process, "   program and libraries");
-  line("  particles", particles, "");
-  line("  order", order, "");
-  line("  threads", scratch, "");
-  line("  grid", grid, blocks);
+  line("  process", std::max(0.0, now - total), "   measured: program, libraries, shapes");
+  part("  particles", memory.particle_bytes, "");
+  part("  order", memory.order_bytes, "");
+  part("  threads", memory.scratch_bytes, "");
+  part("  grid", memory.grid_bytes, "   " + std::to_string(memory.blocks) + " blocks at the start");
+  part("  effects", memory.table_bytes, "   what is near solids, planes and pins");
+  part("  solver", memory.solver_bytes, "   of implicit steps");
   if (emission > 0.0) line("  emission", emission, "   what emitters will have made, with room to grow");
-  line("  grid's growth", growth, "   allowed for: as much again");
+  line("  grid's growth", growth, "   allowed for: as much again of all that goes with blocks");
+  line("  writing", writing, "   while a frame is written");
 }
 
-void print_forecast(const Scene& scene, const Simulation& simulation, double process) {
+void print_forecast(const Scene& scene, const Simulation& simulation) {
   const auto particles = static_cast<double>(simulation.particles());
   const IntegratorChoice& integrator = simulation.integrator();
   const double dt = integrator.step > 0.0 ? integrator.step : simulation.longest_step();
@@ -101,7 +120,9 @@ void print_forecast(const Scene& scene, const Simulation& simulation, double pro
   }
   std::printf("\n");
   std::printf("  bytes per particle  %zu\n", bytes_per_particle(scene));
-  print_memory(simulation, process, 1.125 * emitted * static_cast<double>(bytes_per_particle(scene)));
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  const std::size_t solver = integrator.implicit ? kSolverNumbers * real : 0;
+  print_memory(simulation, 1.125 * emitted * static_cast<double>(bytes_per_particle(scene) + solver));
   std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
   std::printf("  time                about %.0f s on %d thread%s\n",
               steps * mean * nanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
@@ -115,7 +136,6 @@ int plan_command(const SceneArguments& arguments) {
   if (!scene) return fail(scene.error());
   auto options = simulation_options(arguments);
   if (!options) return fail(options.error());
-  const auto process = static_cast<double>(resident_bytes());
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
   std::printf("%s: dx %g m, %s precision, %s\n", scene->name.c_str(), scene->grid.spacing,
@@ -125,7 +145,7 @@ int plan_command(const SceneArguments& arguments) {
   std::printf("steps: %s; %s\n", integrator.implicit ? "implicit" : "explicit", integrator.reason.c_str());
   print_effects(*scene, **simulation);
   print_passes(**simulation);
-  print_forecast(*scene, **simulation, process);
+  print_forecast(*scene, **simulation);
   return 0;
 }
 

@@ -73,7 +73,8 @@ class Run {
   Result<void> write_frame(const FrameReport& frame);
   Result<void> write_bundle(const Error& error);
   int interrupted();
-  int stop(Error error);
+  Result<void> save_here();
+  int stop(Error error, bool while_stepping);
   void tell(const FrameReport& frame, const Json::Value& row) const;
   void tell_integrator() const;
   void tell_redone(const FrameReport& frame, Progress& progress) const;
@@ -228,20 +229,32 @@ Result<void> Run::write_bundle(const Error& error) {
   return write_text(folder + "/scene.json", scene_.canonical + "\n");
 }
 
+/// In the midst of a frame.
+Result<void> Run::save_here() {
+  const std::int64_t frame = simulation_->counters().frame;
+  if (auto saved = simulation_->save(folder_.checkpoint(frame)); !saved) return saved;
+  folder_.prune_checkpoints(frame);
+  return {};
+}
+
 int Run::interrupted() {
   const int signal = g_signal;
-  const std::int64_t frame = simulation_->counters().frame;
   log_.end("interrupted");
-  if (auto saved = simulation_->save(folder_.checkpoint(frame)); !saved) return fail(saved.error());
-  folder_.prune_checkpoints(frame);
+  if (auto saved = save_here(); !saved) return fail(saved.error());
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
   std::fprintf(stderr, "repose: interrupted; state saved in %s, the same command with --resume goes on\n",
                folder_.path().c_str());
   return 128 + signal;
 }
 
-int Run::stop(Error error) {
+int Run::stop(Error error, bool while_stepping) {
   log_.end(error.text());
+  if (error.kind == ErrorKind::kMemory && while_stepping && simulation_->sound()) {
+    if (auto saved = save_here(); !saved)
+      fail(saved.error());
+    else
+      error.message += "; the state is saved in " + folder_.path() + ", from which --resume goes on";
+  }
   if (error.kind == ErrorKind::kPhysics) {
     if (auto written = write_bundle(error); !written)
       fail(written.error());
@@ -267,11 +280,11 @@ int Run::go() {
     const std::int64_t before = simulation_->counters().frame;
     auto frame = advance(progress);
     if (!frame || g_signal != 0) progress.leave();
-    if (!frame) return stop(frame.error());
+    if (!frame) return stop(frame.error(), true);
     // A signal can come in the last step of a frame: the frame is then whole, and nobody else will write it.
     if (frame->frame > before) {
       tell_redone(*frame, progress);
-      if (auto written = write_frame(*frame); !written) return stop(written.error());
+      if (auto written = write_frame(*frame); !written) return stop(written.error(), false);
     }
     if (g_signal != 0 && simulation_->counters().frame < frames_.last) return interrupted();
   }

@@ -28,6 +28,7 @@ class AlignedArray {
   /// Makes room for `size` zeros; what was there is gone. Throws std::bad_alloc.
   void resize(std::size_t size) {
     if (size > capacity_) {
+      *this = AlignedArray();  // the old memory first, or both would be there for a moment
       const std::size_t bytes = round_up((size + kPadding / sizeof(T)) * sizeof(T));
       const std::size_t shift = bytes >= kLarge ? next_shift() : 0;
       auto* raw = static_cast<std::byte*>(std::aligned_alloc(kAlignment, bytes + shift));

@@ -1,5 +1,6 @@
 // Repose: how bad input is reported. A function that can refuse its input returns Result<T>; nothing
-// throws across a floor. Bugs are REPOSE_ASSERT, trouble in the physics is a StepReport: neither is an Error.
+// throws across a floor. Bugs are REPOSE_ASSERT, or kInternal where a plan can be checked before it runs;
+// trouble in the physics is a StepReport.
 #pragma once
 
 #include <cstdio>
@@ -16,6 +17,7 @@ enum class ErrorKind {
   kBadScene = 65,      ///< a scene, or geometry that it names, is wrong
   kNoInput = 66,       ///< an input file does not exist or cannot be read
   kPhysics = 70,       ///< the physics gave out
+  kInternal = 71,      ///< a bug in Repose
   kCannotCreate = 73,  ///< the output cannot be written
   kIo = 74,            ///< reading or writing failed midway
   kInUse = 75,         ///< another run holds the output

@@ -14,7 +14,7 @@ void Age::declare(Fields& fields) {
 
 template <class Real>
 void Age::initialize(Newcomers<Real>& newcomers) const {
-  Real* const birth = newcomers.set.extra[newcomers.set.extra_index(kBirth)].values.data();
+  Real* const birth = newcomers.set.extra[newcomers.set.extra_index(kBirth.kName)].values.data();
   for (std::size_t p = newcomers.first; p < newcomers.last; ++p)
     birth[p] = static_cast<Real>(newcomers.birth(p));
 }

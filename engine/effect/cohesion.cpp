@@ -28,10 +28,9 @@ void Cohesion::add_before_return(Assembly<Real>& assembly, std::size_t set) cons
   if (p == nullptr) return;
   const DruckerPragerParameters& sand = assembly.sets[set].sand();
   const auto strength = static_cast<Real>(sand.cohesion_strain(p->strength));
-  assembly.plan.gather[set].push_back(
-      {{"cohesion", why(), {"cohesion"}, {"cohesion"}}, [strength](Chunk<Real>& chunk) {
-         std::fill_n(chunk.scratch.yield.cohesion.data(), chunk.particles.count, strength);
-       }});
+  assembly.gather(set).add(
+      {"cohesion", why()}, reads(kCohesion), writes(kCohesion),
+      [strength](const auto& at) { std::fill_n(at.write(kCohesion), at.count(), strength); });
 }
 
 template <class Real>
@@ -39,12 +38,13 @@ void Cohesion::add_after_return(Assembly<Real>& assembly, std::size_t set) const
   const CohesionParameters* p = find(assembly.sets[set]);
   if (p == nullptr || !p->cut_off) return;
   const HenckyConstants<Real> elastic(assembly.sets[set].elasticity());
-  assembly.plan.gather[set].push_back(
-      {{"tension cut-off", why() + ".tension", {"strain"}, {"strain", "trace of trial"}},
-       [kernel = assembly.plan.kernels->cut_tension, elastic,
-        limit = static_cast<Real>(p->tension)](Chunk<Real>& chunk) {
-         kernel(chunk.particles.strain, elastic, limit, chunk.scratch.value.data(), chunk.particles.count);
-       }});
+  auto passes = assembly.gather(set);
+  const auto trace = when(passes.provides(kTraceOfTrial), kTraceOfTrial);
+  passes.add({"tension cut-off", why() + ".tension"}, reads(kHenckyStrain, trace), writes(kHenckyStrain, trace),
+             [kernel = assembly.plan.kernels->cut_tension, elastic,
+              limit = static_cast<Real>(p->tension)](const auto& at) {
+               kernel(at.write(kHenckyStrain).data(), elastic, limit, at.write(kTraceOfTrial), at.count());
+             });
 }
 
 template void Cohesion::add_before_return(Assembly<float>&, std::size_t) const;

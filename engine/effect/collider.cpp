@@ -48,23 +48,63 @@ void describe(Fields& fields, Collider& collider) {
 /// What a rigid or a deforming solid reaches while it moves.
 template <class Real>
 Disturbance<Real> disturbance(const Solid& solid) {
+  const auto may_reach = [](const State<Real>& state, double distance) {
+    return distance <= radius_of_particles_from_nodes() * state.spacing;
+  };
   if (solid.sequence != nullptr) {
-    return {"solid " + solid.name,
-            [solid](const State<Real>& state, const Index3& block, double from, double to) {
+    return {"solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from, double to) {
               if (solid.sequence->fastest(from, to) == 0.0) return false;
-              const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
-              const double side = solid.hollow ? -1.0 : 1.0, radius = block_reach(state.spacing);
-              return side * solid.sequence->at(from)->signed_distance(x) <= radius ||
-                     side * solid.sequence->at(to)->signed_distance(x) <= radius;
+              const Vec3 x = BlockPlace<Real>(state, block).middle();
+              const double side = solid.hollow ? -1.0 : 1.0;
+              return may_reach(state, side * solid.sequence->at(from)->signed_distance(x)) ||
+                     may_reach(state, side * solid.sequence->at(to)->signed_distance(x));
             }};
   }
-  return {"solid " + solid.name,
-          [solid](const State<Real>& state, const Index3& block, double from, double to) {
-            const Vec3 x = state.world(block, {1.5, 1.5, 1.5});
+  return {"solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from, double to) {
+            const Vec3 x = BlockPlace<Real>(state, block).middle();
             const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
-            const double radius = block_reach(state.spacing);
-            return before != after && std::min(solid.distance(before), solid.distance(after)) <= radius;
+            return before != after && may_reach(state, std::min(solid.distance(before), solid.distance(after)));
           }};
+}
+
+/// Tables of what is near, made anew where blocks are, and where a solid moves, in each step.
+template <class Real>
+void add_tables(StepPlan<Real>& plan, const std::vector<Solid>& solids) {
+  const bool v_tilde = !plan.implicit || plan.advection == Advection::kBeforeFriction;
+  const auto& tables = plan.tables.template make<Real>(kContactTables, solids,
+                                                       plan.tables.template get<Real>(kContactLog), v_tilde);
+  plan.order.push_back(
+      plan.passes().after_order({"nodes near solids", "colliders"}, reads(kTopology), writes(kContactTables),
+                                [](const auto& at) { at.write(kContactTables).follow_topology(at.state()); }));
+  if (!tables.any_moves()) return;
+  const bool any_rigid =
+      std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.motion != nullptr; });
+  plan.prepare.push_back(plan.passes().each_try(
+      {"poses of solids", any_rigid ? "colliders.motion" : "colliders.frames"}, reads(kContactTables),
+      writes(kContactTables),
+      [](const auto& at, Real dt) { at.write(kContactTables).prepare(at.state(), dt); }));
+}
+
+/// Explicit steps let solids act at once; implicit ones solve within what they list.
+template <class Real>
+void add_contacts(StepPlan<Real>& plan) {
+  if (plan.implicit) {
+    plan.constraints.push_back(plan.passes().constraints(
+        {"contacts of solids", "colliders"}, reads(kNodeVelocity, kContactTables),
+        [](const auto& at, std::vector<Constraint<Real>>& constraints) {
+          at.read(kContactTables).list(at.block(), at.place(), at.dt(), at.read(kNodeVelocity), constraints);
+        }));
+    return;
+  }
+  const auto log = when(plan.tables.find(kContactLog.kInfo) != nullptr, kContactLog);
+  const auto tilde = when(plan.tables.template get<Real>(kContactTables)->any_friction(), kVTilde);
+  plan.holds.push_back(
+      plan.passes().over_nodes({"collide, friction", "colliders"}, reads(kNodeVelocity, kContactTables),
+                               writes(kNodeVelocity, tilde, log), [logs = log.declared](const auto& at) {
+                                 at.read(kContactTables)
+                                     .collide(at.block(), at.place(), at.dt(), at.write(kNodeVelocity),
+                                              at.write(kVTilde), logs ? &at.write(kContactLog) : nullptr);
+                               }));
 }
 
 }  // namespace
@@ -89,32 +129,25 @@ void Colliders::declare(Fields& fields) {
   });
 }
 
+double Colliders::top_speed(const std::vector<Solid>& solids, const Bounds& box) const {
+  double most = 0.0;
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    if (solids[k].moves()) most = std::max(most, MovingSolid(solids[k], k).fastest(0.0, kForEver, box));
+  }
+  return most;
+}
+
 template <class Real>
 void Colliders::add_to_nodes(Assembly<Real>& assembly) const {
-  const auto tables = std::make_shared<ContactTables<Real>>(assembly.solids, assembly.contact_log);
   StepPlan<Real>& plan = assembly.plan;
-  plan.order.push_back({{"nodes near solids", "colliders", {"topology"}, {"contacts"}},
-                        [tables](State<Real>& state) { tables->follow_topology(state); }});
-  if (tables->any_moves()) {
-    const bool any_rigid = std::any_of(assembly.solids.begin(), assembly.solids.end(),
-                                       [](const Solid& solid) { return solid.motion != nullptr; });
-    const char* const key = any_rigid ? "colliders.motion" : "colliders.frames";
-    plan.prepare.push_back({{"poses of solids", key, {"contacts"}, {"contacts"}},
-                            [tables](State<Real>& state, Real dt) { tables->prepare(state, dt); }});
+  add_tables(plan, assembly.solids);
+  const auto* const tables = plan.tables.template get<Real>(kContactTables);
+  if (tables->any_moves())
     plan.speeds.push_back([tables](double from, double to) { return tables->fastest(from, to); });
-  }
   for (const Solid& solid : assembly.solids) {
     if (solid.moves()) plan.disturbances.push_back(disturbance<Real>(solid));
   }
-  if (plan.implicit) {
-    plan.contacts.push_back({{"contacts of solids", "colliders", {"contacts"}, {}},
-                             [tables](const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) {
-                               tables->list(block, holds);
-                             }});
-  }
-  plan.holds.push_back(
-      {{"collide, friction", "colliders", {"node velocity", "contacts"}, {"node velocity", "v-tilde"}},
-       [tables](NodeBlock<Real>& block) { tables->collide(block); }});
+  add_contacts(plan);
 }
 
 template void Colliders::add_to_nodes(Assembly<float>&) const;

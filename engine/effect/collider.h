@@ -44,6 +44,7 @@ struct Colliders : Effect {
     return list.empty() ? "no entry in 'colliders'" : std::to_string(list.size()) + " in 'colliders'";
   }
 
+  double top_speed(const std::vector<Solid>& solids, const Bounds& box) const;
   /// v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016, sections 8 and 8.1),
   /// in the order of the list; the tables that this needs, after each order event; and where a solid moves, its
   /// poses.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace repose {
 namespace {
@@ -18,56 +19,34 @@ bool has_friction(const Solid& solid) {
 }  // namespace
 
 template <class Real>
-struct ContactTables<Real>::NoRecord {
-  void before(const Real*) {}
-  void after(std::size_t, const Real*, const Real*) {}
-};
-
-template <class Real>
-struct ContactTables<Real>::Recorder {
-  ContactSums* sums;
-  double mass;
-  Vec3 x;
-  Vec3 start = Vec3::Zero();
-
-  static Vec3 vector(const Real* v) { return {double(v[0]), double(v[1]), double(v[2])}; }
-  void before(const Real* v) { start = vector(v); }
-  void after(std::size_t solid, const Real* wall, const Real* v) {
-    const Vec3 moves = wall == nullptr ? Vec3(0, 0, 0) : vector(wall);
-    sums[solid].add(x, mass * (vector(v) - start), moves);
-  }
-};
-
-template <class Real>
-ContactTables<Real>::ContactTables(std::vector<Solid> solids, std::shared_ptr<ContactLog> log)
-    : solids_(std::move(solids)), log_(std::move(log)) {
-  friction_ = std::any_of(solids_.begin(), solids_.end(), has_friction);
+ContactTables<Real>::ContactTables(std::vector<Solid> solids, ContactLog* log, bool v_tilde)
+    : solids_(std::move(solids)), log_(log) {
+  friction_ = v_tilde && std::any_of(solids_.begin(), solids_.end(), has_friction);
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     if (solids_[k].moves()) moving_.emplace_back(solids_[k], k);
   }
 }
 
-/// How far from its middle a block may feel a solid: half the diagonal of its nodes, the cell that a node may
-/// be predicted to move along each axis, its own reach.
+/// How far from its middle a block may feel a solid: its nodes, each with the cell that it may be predicted to
+/// move along each axis, and its own reach.
 template <class Real>
-double ContactTables<Real>::reach(const State<Real>& state) const {
-  return ((1.5 + 1.0) * std::sqrt(3.0) + kNodeReach) * state.spacing;
+double ContactTables<Real>::reach(double spacing) {
+  return (radius_of_nodes(1.0) + kNodeReach) * spacing;
 }
 
 template <class Real>
 typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const State<Real>& state,
                                                                        const Index3& block) const {
-  const int flat = state.topology.flat_axis;
+  const BlockPlace<Real> place(state, block);
   NearSolids near;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     if (solids_[k].moves()) continue;
-    if (solids_[k].distance(in_plane(state.world(block, {1.5, 1.5, 1.5}), flat)) > reach(state)) continue;
+    if (solids_[k].distance(place.middle()) > reach(state.spacing)) continue;
     Near entry{k, {}};
-    for (int node = 0; node < kBlockNodes; ++node) {
-      const Vec3 x =
-          in_plane(state.world(block, {double(node / 16), double(node / 4 % 4), double(node % 4)}), flat);
-      const Vec3 normal = in_plane(solids_[k].normal(x, 0.25 * state.spacing), flat);
-      NodeContact<Real>& contact = entry.nodes[static_cast<std::size_t>(node)];
+    for (std::size_t node = 0; node < kBlockNodes; ++node) {
+      const Vec3 x = place.node(node);
+      const Vec3 normal = in_plane(solids_[k].normal(x, 0.25 * state.spacing), place.flat_axis());
+      NodeContact<Real>& contact = entry.nodes[node];
       contact.distance = static_cast<Real>(solids_[k].distance(x) - kNodeReach * state.spacing);
       for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);
     }
@@ -106,11 +85,11 @@ void ContactTables<Real>::find_bounds(const State<Real>& state) {
 
 template <class Real>
 void ContactTables<Real>::list_moving(const State<Real>& state) {
-  const double far = reach(state) + kMarginCells * state.spacing;
+  const double far = reach(state.spacing) + kMarginCells * state.spacing;
   listed_.clear();
   listed_begin_.assign(1, 0);
   for (const Index3& block : state.grid.blocks()) {
-    const Vec3 middle = in_plane(state.world(block, {1.5, 1.5, 1.5}), flat_axis_);
+    const Vec3 middle = BlockPlace<Real>(state, block).middle();
     for (std::uint32_t k = 0; k < moving_.size(); ++k) {
       if (moving_[k].listed_distance(middle) <= far) listed_.push_back(k);
     }
@@ -144,9 +123,7 @@ void ContactTables<Real>::share_out(State<Real>& state) {
   state.after_friction.field.resize(static_cast<std::size_t>(slots));
   state.after_friction.live.assign(static_cast<std::size_t>(slots), 0);
   if (log_ == nullptr) return;
-  log_->follow_topology(blocks, [this](std::size_t b) {
-    return of_block_[b] != nullptr || (any_moves() && listed_begin_[b] < listed_begin_[b + 1]);
-  });
+  log_->follow_topology(blocks, [this](std::size_t b) { return near_any(b); });
 }
 
 template <class Real>
@@ -170,23 +147,27 @@ double ContactTables<Real>::fastest(double from, double to) const {
   return most;
 }
 
+template <class Real>
+bool ContactTables<Real>::near_any(std::size_t block) const {
+  return of_block_[block] != nullptr || (any_moves() && listed_begin_[block] < listed_begin_[block + 1]);
+}
+
 /// The solids near a block, in the order of the scene.
 template <class Real>
-std::size_t ContactTables<Real>::find_touches(const NodeBlock<Real>& block, Touch* touches) const {
+std::size_t ContactTables<Real>::find_touches(std::size_t block, const BlockPlace<Real>& place,
+                                              Touch* touches) const {
   std::size_t count = 0;
   const auto add = [&](const Touch& touch) {
     REPOSE_ASSERT(count < kMost);
     touches[count++] = touch;
   };
-  if (const NearSolids* near = of_block_[block.block]) {
+  if (const NearSolids* near = of_block_[block]) {
     for (const Near& solid : *near) add({solid.solid, solid.nodes.data(), nullptr});
   }
   if (!any_moves()) return count;
-  const State<Real>& state = block.state;
-  for (std::size_t i = listed_begin_[block.block]; i < listed_begin_[block.block + 1]; ++i) {
+  for (std::size_t i = listed_begin_[block]; i < listed_begin_[block + 1]; ++i) {
     const MovingSolid& moving = moving_[listed_[i]];
-    const Vec3 middle = in_plane(state.world(state.grid.blocks()[block.block], {1.5, 1.5, 1.5}), flat_axis_);
-    if (moving.distance(middle) > reach(state)) continue;
+    if (moving.distance(place.middle()) > reach(place.spacing())) continue;
     add({moving.index(), nullptr, &moving});
   }
   std::sort(touches, touches + count, [](const Touch& a, const Touch& b) { return a.solid < b.solid; });
@@ -230,111 +211,107 @@ void ContactTables<Real>::collide_node(const Touch* touches, std::size_t count, 
   }
 }
 
-/// Calls visit(node, mass and v, mass and v-tilde) for each node with mass; returns whether friction changed
-/// one.
+/// Calls record(mass, place) for a recorder of each node with mass. Returns whether friction changed one.
 template <class Real>
-template <class Visit>
-bool ContactTables<Real>::for_each_node(NodeBlock<Real>& block, Real* rubbed, Visit visit) const {
-  bool any_friction = false;
-  for (std::size_t node = 0; node < kBlockNodes; ++node) {
-    Real* at = block.nodes + node * kNodeValues;
-    Real* after = rubbed + node * kNodeValues;
-    std::copy_n(at, kNodeValues, after);
-    if (!(at[0] > Real(0))) continue;
-    visit(node, at, after);
-    any_friction = any_friction || !std::equal(at, at + kNodeValues, after);
-  }
-  return any_friction;
-}
-
-template <class Real>
-Vec3 ContactTables<Real>::place_of(const NodeBlock<Real>& block, std::size_t node) const {
-  const std::array<double, 3> offset{double(node / 16), double(node / 4 % 4), double(node % 4)};
-  return in_plane(block.state.world(block.state.grid.blocks()[block.block], offset), flat_axis_);
-}
-
-/// Returns whether friction changed a node.
-template <class Real>
-bool ContactTables<Real>::collide_block(NodeBlock<Real>& block, const Touch* touches, std::size_t count,
-                                        Real* rubbed) const {
-  Beside beside = Beside::kResting;
+template <class Record>
+bool ContactTables<Real>::collide_block(const BlockPlace<Real>& place, Real dt, const Touch* touches,
+                                        std::size_t count, Real* nodes, Real* rubbed, Record record) const {
+  constexpr bool kRecords = !std::is_same_v<decltype(record(Real(0), Vec3())), NoContactRecorder>;
+  Beside beside = kRecords ? Beside::kRigid : Beside::kResting;
   for (const Touch* touch = touches; touch != touches + count; ++touch) {
     if (touch->moving != nullptr)
       beside = std::max(beside, touch->moving->deforms() ? Beside::kDeforming : Beside::kRigid);
   }
-  const auto act = [&]<Beside kBeside>(auto record) {
-    return for_each_node(block, rubbed, [&](std::size_t node, Real* at, Real* after) {
-      const Vec3 x = kBeside == Beside::kResting ? Vec3() : place_of(block, node);
-      collide_node<kBeside>(touches, count, node, x, block.dt, at + 1, after + 1, record(at, x));
-    });
+  const auto act = [&]<Beside kBeside>() {
+    bool any_friction = false;
+    for (std::size_t node = 0; node < kBlockNodes; ++node) {
+      Real *const at = nodes + node * kNodeValues, *const after = rubbed + node * kNodeValues;
+      std::copy_n(at, kNodeValues, after);
+      if (!(at[0] > Real(0))) continue;
+      const Vec3 x = kBeside == Beside::kResting ? Vec3(0, 0, 0) : place.node(node);
+      collide_node<kBeside>(touches, count, node, x, dt, at + 1, after + 1, record(at[0], x));
+      any_friction = any_friction || !std::equal(at, at + kNodeValues, after);
+    }
+    return any_friction;
   };
-  if (log_ != nullptr) {
-    ContactSums* const row = log_->row(block.block);
-    std::fill_n(row, log_->solids(), ContactSums());
-    const auto record = [row](const Real* at, const Vec3& x) {
-      return Recorder{row, static_cast<double>(at[0]), x};
-    };
-    return beside == Beside::kDeforming ? act.template operator()<Beside::kDeforming>(record)
-                                        : act.template operator()<Beside::kRigid>(record);
-  }
-  if (count == 0) return false;
-  const auto record = [](const Real*, const Vec3&) { return NoRecord{}; };
-  if (beside == Beside::kDeforming) return act.template operator()<Beside::kDeforming>(record);
-  if (beside == Beside::kRigid) return act.template operator()<Beside::kRigid>(record);
-  return act.template operator()<Beside::kResting>(record);
+  if (beside == Beside::kDeforming) return act.template operator()<Beside::kDeforming>();
+  if (beside == Beside::kRigid) return act.template operator()<Beside::kRigid>();
+  return act.template operator()<Beside::kResting>();
 }
 
 template <class Real>
-void ContactTables<Real>::collide(NodeBlock<Real>& block) const {
-  const bool listed = any_moves() && listed_begin_[block.block] < listed_begin_[block.block + 1];
-  if (of_block_[block.block] == nullptr && !listed) return;
-  auto& rubbed_field = block.state.after_friction;
-  const std::int32_t slot = rubbed_field.slot.empty() ? -1 : rubbed_field.slot[block.block];
+void ContactTables<Real>::collide(std::size_t block, const BlockPlace<Real>& place, Real dt, Real* nodes,
+                                  SparseNodeField<Real>& after_friction, ContactLog* log) const {
+  if (!near_any(block)) return;
+  const std::int32_t slot = after_friction.slot.empty() ? -1 : after_friction.slot[block];
   Touch touches[kMost];
-  const std::size_t count = find_touches(block, touches);
+  const std::size_t count = find_touches(block, place, touches);
   Real rubbed[kBlockValues];
-  const bool any_friction = collide_block(block, touches, count, rubbed);
+  bool any_friction = false;
+  if (log != nullptr) {
+    ContactSums* const sums = log->begin(block);
+    any_friction = collide_block(place, dt, touches, count, nodes, rubbed, [sums](Real mass, const Vec3& x) {
+      return ContactRecorder{sums, static_cast<double>(mass), x};
+    });
+  } else if (count > 0) {
+    any_friction = collide_block(place, dt, touches, count, nodes, rubbed,
+                                 [](Real, const Vec3&) { return NoContactRecorder{}; });
+  }
   if (slot < 0) return;
-  rubbed_field.live[static_cast<std::size_t>(slot)] = any_friction ? 1 : 0;
-  if (any_friction) std::copy_n(rubbed, kBlockValues, rubbed_field.block(block.block));
+  after_friction.live[static_cast<std::size_t>(slot)] = any_friction ? 1 : 0;
+  if (any_friction) std::copy_n(rubbed, kBlockValues, after_friction.block(block));
 }
 
 template <class Real>
-void ContactTables<Real>::list(const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) const {
-  const bool listed = any_moves() && listed_begin_[block.block] < listed_begin_[block.block + 1];
-  if (of_block_[block.block] == nullptr && !listed) return;
+Constraint<Real> ContactTables<Real>::constraint(const Touch& touch, const BlockPlace<Real>& place,
+                                                 std::size_t node, Real dt) const {
+  // No node goes farther than a cell along each axis in a step: that far a contact may matter.
+  const Real fast[3] = {static_cast<Real>(kRootOfThree * spacing_ / static_cast<double>(dt)), Real(0), Real(0)};
+  Constraint<Real> made;
+  const auto meet = [&](auto deforms) {
+    return touch.moving->template meet<deforms.value>(place.node(node), static_cast<double>(dt), spacing_,
+                                                      flat_axis_, fast, made.velocity);
+  };
+  const NodeContact<Real> at = touch.moving == nullptr   ? touch.nodes[node]
+                               : touch.moving->deforms() ? meet(std::true_type())
+                                                         : meet(std::false_type());
+  made.node = static_cast<int>(node);
+  made.contact = solids_[touch.solid].contact;
+  made.solid = static_cast<int>(touch.solid);
+  made.distance = at.distance;
+  std::copy_n(at.normal, 3, made.normal);
+  made.bound = dot(made.normal, made.velocity);
+  if (made.contact == Contact::kSeparating) made.bound += (std::min(at.distance, Real(0)) - at.distance) / dt;
+  if (made.contact != Contact::kSticky) made.friction = static_cast<Real>(solids_[touch.solid].friction);
+  return made;
+}
+
+template <class Real>
+void ContactTables<Real>::list(std::size_t block, const BlockPlace<Real>& place, Real dt, const Real* nodes,
+                               std::vector<Constraint<Real>>& constraints) const {
+  if (!near_any(block)) return;
   Touch touches[kMost];
-  const std::size_t count = find_touches(block, touches);
-  // No node goes farther than a cell in a step: that far a contact may matter.
-  const Real fast[3] = {static_cast<Real>(spacing_ / static_cast<double>(block.dt)), Real(0), Real(0)};
+  const std::size_t count = find_touches(block, place, touches);
   for (std::size_t node = 0; node < kBlockNodes; ++node) {
-    if (!(block.nodes[node * kNodeValues] > Real(0))) continue;
+    if (!(nodes[node * kNodeValues] > Real(0))) continue;
     for (std::size_t k = 0; k < count; ++k) {
-      Real wall[3] = {};
-      const Touch& touch = touches[k];
-      const auto meet = [&](auto deforms) {
-        return touch.moving->template meet<deforms.value>(place_of(block, node), static_cast<double>(block.dt),
-                                                          spacing_, flat_axis_, fast, wall);
-      };
-      const NodeContact<Real> at = touch.moving == nullptr   ? touch.nodes[node]
-                                   : touch.moving->deforms() ? meet(std::true_type())
-                                                             : meet(std::false_type());
-      const Contact contact = solids_[touch.solid].contact;
-      const bool against = contact == Contact::kSeparating;
-      if (!(at.distance < (against ? static_cast<Real>(spacing_) : Real(0)))) continue;
-      Hold<Real> hold;
-      hold.node = static_cast<int>(node);
-      hold.kind = contact == Contact::kSticky ? Hold<Real>::Kind::kAll
-                  : against                   ? Hold<Real>::Kind::kAgainst
-                                              : Hold<Real>::Kind::kAlong;
-      std::copy_n(at.normal, 3, hold.normal);
-      std::copy_n(wall, 3, hold.velocity);
-      hold.bound = dot(at.normal, wall);
-      if (contact != Contact::kSticky) hold.friction = static_cast<Real>(solids_[touch.solid].friction);
-      if (against) hold.bound += (std::min(at.distance, Real(0)) - at.distance) / block.dt;
-      holds.push_back(hold);
+      const Constraint<Real> made = constraint(touches[k], place, node, dt);
+      // And that far a solid comes to meet it.
+      const Real comes = std::max(Real(0), dt * dot(made.normal, made.velocity));
+      const bool separating = made.contact == Contact::kSeparating;
+      const Real within = separating ? static_cast<Real>(kRootOfThree * spacing_) + comes : Real(0);
+      if (made.distance < within) constraints.push_back(made);
     }
   }
+}
+
+template <class Real>
+std::size_t ContactTables<Real>::bytes() const {
+  constexpr std::size_t kEntry = 96;  // of the map, with what the heap adds
+  std::size_t sum = of_block_.capacity() * sizeof(void*) +
+                    (listed_begin_.capacity() + listed_.capacity()) * sizeof(std::uint32_t);
+  for (const auto& [block, near] : seen_) sum += kEntry + near.capacity() * sizeof(Near);
+  return sum;
 }
 
 template class ContactTables<float>;

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/effect/contact_log.h"
 #include "engine/effect/moving_solid.h"
+#include "engine/plan/contact_log.h"
 #include "engine/plan/step_plan.h"
 
 namespace repose {
@@ -18,17 +18,23 @@ namespace repose {
 template <class Real>
 class ContactTables {
  public:
-  /// `log` may be null.
-  ContactTables(std::vector<Solid> solids, std::shared_ptr<ContactLog> log);
+  /// `log` may be null. `v_tilde`: whether steps keep the velocity after friction beside that before it.
+  ContactTables(std::vector<Solid> solids, ContactLog* log, bool v_tilde);
 
   /// Tables and lists for the blocks of the grid.
   void follow_topology(State<Real>& state);
   /// Where moving solids stand before and after the step; a new list when they have used up its margin.
   void prepare(State<Real>& state, Real dt);
-  void collide(NodeBlock<Real>& block) const;
-  /// What may hold the nodes of a block in this step.
-  void list(const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) const;
+  /// Lets solids act on the nodes of a block, position `block` in the grid: v* -> v-bar, and v-tilde into
+  /// `after_friction` where friction changed one. `log` may be null.
+  void collide(std::size_t block, const BlockPlace<Real>& place, Real dt, Real* nodes,
+               SparseNodeField<Real>& after_friction, ContactLog* log) const;
+  /// Lists what may hold the nodes of a block in this step.
+  void list(std::size_t block, const BlockPlace<Real>& place, Real dt, const Real* nodes,
+            std::vector<Constraint<Real>>& constraints) const;
 
+  bool any_friction() const { return friction_; }
+  std::size_t bytes() const;
   bool any_moves() const { return !moving_.empty(); }
   /// Largest speed of the surface of moving solids where there are blocks, m/s.
   double fastest(double from, double to) const;
@@ -53,27 +59,25 @@ class ContactTables {
   /// must.
   enum class Beside { kResting, kRigid, kDeforming };
 
-  /// Why a node's record is a type: where nothing is recorded it must not cost.
-  struct NoRecord;
-  struct Recorder;
-
-  double reach(const State<Real>& state) const;
+  static double reach(double spacing);
   NearSolids tabulate(const State<Real>& state, const Index3& block) const;
   void find_bounds(const State<Real>& state);
   void list_moving(const State<Real>& state);
   void share_out(State<Real>& state);
   bool rubs(std::size_t block) const;
-  Vec3 place_of(const NodeBlock<Real>& block, std::size_t node) const;
-  std::size_t find_touches(const NodeBlock<Real>& block, Touch* touches) const;
+  bool near_any(std::size_t block) const;
+  std::size_t find_touches(std::size_t block, const BlockPlace<Real>& place, Touch* touches) const;
   template <Beside kBeside, class Record>
   void collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x, Real dt, Real* v,
                     Real* rubbed, Record record) const;
-  template <class Visit>
-  bool for_each_node(NodeBlock<Real>& block, Real* rubbed, Visit visit) const;
-  bool collide_block(NodeBlock<Real>& block, const Touch* touches, std::size_t count, Real* rubbed) const;
+  template <class Record>
+  bool collide_block(const BlockPlace<Real>& place, Real dt, const Touch* touches, std::size_t count,
+                     Real* nodes, Real* rubbed, Record record) const;
+  Constraint<Real> constraint(const Touch& touch, const BlockPlace<Real>& place, std::size_t node,
+                              Real dt) const;
 
   std::vector<Solid> solids_;
-  std::shared_ptr<ContactLog> log_;
+  ContactLog* log_;
   bool friction_ = false;
   double spacing_ = 0.0;
   int flat_axis_ = -1;
@@ -84,5 +88,7 @@ class ContactTables {
   std::vector<std::uint32_t> listed_;        // positions in moving_
   Bounds bounds_;                            // of the nodes, m
 };
+
+inline constexpr TableHandle<"contacts", ContactTables> kContactTables;
 
 }  // namespace repose

@@ -30,17 +30,16 @@ template <class Real>
 void Dilatancy::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
   const DilatancyParameters* p = find(assembly.sets[set]);
   if (p == nullptr) return;
-  const std::size_t channel = assembly.state.sets[set].extra_index(kOpened);
   const auto slope = static_cast<Real>(assembly.sets[set].sand().cone_slope_at(p->angle));
   const auto per_limit = static_cast<Real>(1.0 / p->limit);
-  assembly.plan.gather[set].push_back(
-      {{"dilatancy, slope", why(), {kOpened, "dilatancy"}, {"dilatancy"}}, [=](Chunk<Real>& chunk) {
-         const Real* const opened = chunk.set.extra[channel].values.data() + chunk.first;
-         Real* const dilatancy = chunk.scratch.yield.dilatancy.data();
-         for (std::size_t i = 0; i < chunk.particles.count; ++i) {
-           dilatancy[i] = slope * std::max(Real(1) - per_limit * opened[i], Real(0));
-         }
-       }});
+  assembly.gather(set).add({"dilatancy, slope", why()}, reads(kOpened, kDilatancy), writes(kDilatancy),
+                           [=](const auto& at) {
+                             const Real* const opened = at.read(kOpened);
+                             Real* const dilatancy = at.write(kDilatancy);
+                             for (std::size_t i = 0; i < at.count(); ++i) {
+                               dilatancy[i] = slope * std::max(Real(1) - per_limit * opened[i], Real(0));
+                             }
+                           });
 }
 
 /// What shear has opened is no gap to be closed: volume correction, whose halves enclose this one, must not
@@ -48,18 +47,16 @@ void Dilatancy::add_before_return(Assembly<Real>& assembly, std::size_t set) con
 template <class Real>
 void Dilatancy::add_after_return(Assembly<Real>& assembly, std::size_t set) const {
   if (find(assembly.sets[set]) == nullptr) return;
-  const std::size_t channel = assembly.state.sets[set].extra_index(kOpened);
-  assembly.plan.gather[set].push_back(
-      {{"dilatancy, opening", why(), {kOpened, "dilated"}, {kOpened, "trace of trial"}},
-       [channel](Chunk<Real>& chunk) {
-         Real* const opened = chunk.set.extra[channel].values.data() + chunk.first;
-         Real* const trace = chunk.scratch.value.data();
-         const Real* const dilated = chunk.scratch.yield.dilated.data();
-         for (std::size_t i = 0; i < chunk.particles.count; ++i) {
-           opened[i] += dilated[i];
-           trace[i] -= dilated[i];
-         }
-       }});
+  auto passes = assembly.gather(set);
+  const auto trace = when(passes.provides(kTraceOfTrial), kTraceOfTrial);
+  passes.add({"dilatancy, opening", why()}, reads(kOpened, kDilated, trace), writes(kOpened, trace),
+             [](const auto& at) {
+               Real *const opened = at.write(kOpened), *const gap = at.write(kTraceOfTrial);
+               const Real* const dilated = at.read(kDilated);
+               for (std::size_t i = 0; i < at.count(); ++i) opened[i] += dilated[i];
+               if (gap == nullptr) return;
+               for (std::size_t i = 0; i < at.count(); ++i) gap[i] -= dilated[i];
+             });
 }
 
 template void Dilatancy::add_before_return(Assembly<float>&, std::size_t) const;

@@ -16,7 +16,7 @@ struct Dilatancy : SandEffect<DilatancyParameters> {
   static constexpr const char* kName = "dilatancy";
   static std::vector<Example> examples();
   /// The channel: log volume opened by shear.
-  static constexpr const char* kOpened = "dilation";
+  static constexpr Handle<"dilation", Place::kExtra> kOpened{};
 
   void declare_in_sand(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }

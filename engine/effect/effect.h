@@ -12,12 +12,14 @@
 #include "engine/base/params.h"
 #include "engine/base/places.h"
 #include "engine/base/result.h"
-#include "engine/effect/contact_log.h"
 #include "engine/effect/solid.h"
 #include "engine/plan/step_plan.h"
 #include "kernels/material/materials.h"
 
 namespace repose {
+
+/// A time, s, that no scene comes to.
+inline constexpr double kForEver = 1e9;
 
 /// What an effect is told of a set of particles before there are any.
 struct SetDescription {
@@ -35,16 +37,23 @@ struct SetDescription {
   const DruckerPragerParameters& sand() const { return std::get<DruckerPragerParameters>(parameters); }
 };
 
-/// One number per particle that an effect keeps.
+/// One number per particle that an effect keeps, by the name of its handle.
 struct Channel {
   std::string name;
   double initial = 0.0;
+
+  template <Text name_>
+  Channel(Handle<name_, Place::kExtra>, double initial_ = 0.0) : name(name_.letters), initial(initial_) {}
 };
 
-/// The channels that are known by name beyond their effects, for attributes of points: log volume that a
-/// particle has gained beside its strain, and the time at which it began, s.
-inline constexpr const char* kVolumeGained = "volume_gained";
-inline constexpr const char* kBirth = "birth";
+/// The channels that are known beyond their effects, for attributes of points: log volume that a particle has
+/// gained beside its strain, and the time at which it began, s.
+inline constexpr Handle<"volume_gained", Place::kExtra> kVolumeGained;
+inline constexpr Handle<"birth", Place::kExtra> kBirth;
+
+/// Of the trial strain, less the volume that has been accounted for since: from the first half of the volume
+/// correction to its second.
+inline constexpr Handle<"trace of trial", Place::kScratch> kTraceOfTrial;
 
 /// A set of particles that is empty when the scene begins, and filled during the run.
 struct Inlet {
@@ -116,16 +125,41 @@ struct Assembly {
   /// Makes particles that begin during the run ready, as those of bodies were: the channels and the hooks
   /// `initialize` of all effects. It may be kept beyond the assembly.
   std::function<void(Newcomers<Real>&)> initialize;
-  /// Made by an effect that measures what solids do, and filled by them; null where none does.
-  std::shared_ptr<ContactLog> contact_log = nullptr;
   /// Where the inlets and the outlets of the effect at hand begin in State::ledger.
   std::size_t first_inlet = 0, first_outlet = 0;
+
+  /// Where passes of set k are added: before the scatter, and after the gather.
+  SetPasses<Real> scatter(std::size_t k) { return plan.scatter_of(state, k); }
+  SetPasses<Real> gather(std::size_t k) { return plan.gather_of(state, k); }
 
   /// The set that inlet k of the effect at hand fills: inlets follow the bodies.
   std::size_t set_of_inlet(std::size_t k) const {
     return state.sets.size() - state.ledger.emitted.size() + first_inlet + k;
   }
 };
+
+/// To be called before a pass that pushes particles, which adds to what they tell: kToldVelocity is then their
+/// own velocity, and what earlier passes have added.
+template <class Real>
+void tell_own_velocity(SetPasses<Real>& passes) {
+  if (passes.provides(kToldVelocity)) return;
+  passes.add({"velocity to be told"}, reads(kParticleVelocity), writes(kToldVelocity), [](const auto& at) {
+    const auto own = at.read(kParticleVelocity);
+    const auto told = at.write(kToldVelocity);
+    for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(own[axis], at.count(), told[axis]);
+  });
+}
+
+/// Whether particles of a block may be within a shape, or nodes of it: no distance exceeds the true one.
+template <class Real>
+bool may_hold_particles(const Shape& shape, const State<Real>& state, const Index3& block) {
+  return shape.signed_distance(BlockPlace<Real>(state, block).middle()) <=
+         radius_of_particles_from_nodes() * state.spacing;
+}
+template <class Real>
+bool may_hold_nodes(const Shape& shape, const BlockPlace<Real>& place) {
+  return shape.signed_distance(place.middle()) <= radius_of_nodes() * place.spacing();
+}
 
 /// What a scene says to ask for an effect: changes of apps/scenes/probe_column.json, a column of sand on a
 /// floor. Tests and benchmarks try every effect by its examples.
@@ -153,12 +187,16 @@ struct Effect {
   /// (m); in plane strain flat_axis >= 0.
   std::vector<Inlet> inlets() const { return {}; }
   double particles_by(double /*time*/, double /*spacing*/, int /*flat_axis*/) const { return 0.0; }
+  /// Its key, where implicit steps cannot have it.
+  const char* explicit_only() const { return nullptr; }
+  /// The most, in m/s, that what it moves itself comes to within a box (m), and so may bring particles to.
+  double top_speed(const std::vector<Solid>&, const Bounds&) const { return 0.0; }
   /// The names of what removes particles.
   std::vector<std::string> outlets() const { return {}; }
 
   std::vector<Channel> channels(const SetDescription&) const { return {}; }
-  /// Whether particles of the set yield by numbers of their own, which passes before the return map have put
-  /// into Scratch::yield, rather than by those of their material alone.
+  /// Whether particles of the set yield by numbers of their own, which passes before the return map have found
+  /// (kCone and what follows it in engine/plan/handle.h), rather than by those of their material alone.
   bool shapes_yield(const SetDescription&) const { return false; }
 
   /// Fills channels, or changes velocity and strain, of particles that begin.

@@ -291,7 +291,7 @@ void Emitters::add_to_nodes(Assembly<Real>& assembly) const {
   }
   const auto runtime = std::make_shared<EmitterRuntime<Real>>(std::move(working), assembly);
   assembly.plan.events.push_back(
-      {{"emit", "emitters", {}, {"particles"}},
+      {PassMaker<Real>::describe({"emit", "emitters"}, reads(), writes(kParticles)),
        [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },
        [runtime](State<Real>& state, ParticleEdit<Real>& edit) { runtime->run(state, edit); }});
 }

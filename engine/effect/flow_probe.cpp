@@ -15,13 +15,13 @@ void FlowCounts::expect_sets(std::size_t sets) {
 
 template <class Real>
 void FlowCounts::follow_topology(const State<Real>& state) {
-  // A particle is at most three cells from its block's middle along each axis, and moves by one at most.
-  const double near = (3.0 + 1.0) * std::sqrt(3.0);
+  // Within it a particle is, and moves by a cell at most.
+  const double near = radius_of_particles();
   const auto owners = state.grid.owners();
   at_origin_.resize(owners.size() * planes_.size());
   near_.assign(owners.size(), 0);
   for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-    const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+    const Index3 block = state.grid.coordinates_of_owner(owner);
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       const FlowPlane& plane = planes_[k];
       const double origin = plane.normal.dot(state.world(block, {0, 0, 0}) - plane.point) / state.spacing;
@@ -31,15 +31,13 @@ void FlowCounts::follow_topology(const State<Real>& state) {
   }
 }
 
-/// A bit per plane near the block, set where the particle is before it.
 template <class Real>
-std::uint32_t FlowCounts::sides(const Chunk<Real>& chunk, std::size_t p) const {
-  const auto& x = chunk.particles.position;
+std::uint32_t FlowCounts::sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t p) const {
   std::uint32_t sides = 0;
-  for (std::uint32_t rest = near_[chunk.owner]; rest != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = near_[owner]; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
     const Vec3& n = planes_[k].normal;
-    const double distance = at_origin_[chunk.owner * planes_.size() + k] + n[0] * double(x[0][p]) +
+    const double distance = at_origin_[owner * planes_.size() + k] + n[0] * double(x[0][p]) +
                             n[1] * double(x[1][p]) + n[2] * double(x[2][p]);
     if (distance > 0.0) sides |= std::uint32_t{1} << k;
   }
@@ -47,21 +45,20 @@ std::uint32_t FlowCounts::sides(const Chunk<Real>& chunk, std::size_t p) const {
 }
 
 template <class Real>
-void FlowCounts::note_sides(Chunk<Real>& chunk) const {
-  if (near_[chunk.owner] == 0) return;
-  for (std::size_t p = 0; p < chunk.particles.count; ++p) {
-    chunk.scratch.value[p] = static_cast<Real>(sides(chunk, p));
-  }
+void FlowCounts::note_sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t count,
+                            Real* noted) const {
+  if (near_[owner] == 0) return;
+  for (std::size_t p = 0; p < count; ++p) noted[p] = static_cast<Real>(sides(owner, x, p));
 }
 
 template <class Real>
-void FlowCounts::count(const Chunk<Real>& chunk, std::size_t set) {
-  if (near_[chunk.owner] == 0) return;
+void FlowCounts::count(std::size_t owner, std::size_t set, const std::array<const Real*, 3>& x,
+                       std::size_t count, const Real* noted) {
+  if (near_[owner] == 0) return;
   const std::size_t sets = crossings_.size() / planes_.size();
-  for (std::size_t p = 0; p < chunk.particles.count; ++p) {
-    const std::uint32_t now = sides(chunk, p);
-    for (std::uint32_t rest = now ^ static_cast<std::uint32_t>(chunk.scratch.value[p]); rest != 0;
-         rest &= rest - 1) {
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::uint32_t now = sides(owner, x, p);
+    for (std::uint32_t rest = now ^ static_cast<std::uint32_t>(noted[p]); rest != 0; rest &= rest - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(rest));
       Crossings& crossings = crossings_[k * sets + set];
       ++((now >> k & 1u) != 0 ? crossings.forth : crossings.back);
@@ -82,10 +79,12 @@ void FlowCounts::take(const State<Real>& state, std::size_t plane, double* talli
   }
 }
 
-#define REPOSE_INSTANTIATE(Real)                                    \
-  template void FlowCounts::follow_topology(const State<Real>&);    \
-  template void FlowCounts::note_sides(Chunk<Real>&) const;         \
-  template void FlowCounts::count(const Chunk<Real>&, std::size_t); \
+#define REPOSE_INSTANTIATE(Real)                                                                            \
+  template void FlowCounts::follow_topology(const State<Real>&);                                            \
+  template void FlowCounts::note_sides(std::size_t, const std::array<const Real*, 3>&, std::size_t, Real*)  \
+      const;                                                                                                \
+  template void FlowCounts::count(std::size_t, std::size_t, const std::array<const Real*, 3>&, std::size_t, \
+                                  const Real*);                                                             \
   template void FlowCounts::take(const State<Real>&, std::size_t, double*);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

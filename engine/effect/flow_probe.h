@@ -17,7 +17,7 @@ struct FlowPlane {
 
 class FlowCounts {
  public:
-  /// What Scratch::value, which hands sides from one pass to the next, can hold as a whole number.
+  /// What kSides can hold as a whole number.
   static constexpr std::size_t kMost = 20;
 
   explicit FlowCounts(std::vector<FlowPlane> planes);
@@ -28,27 +28,40 @@ class FlowCounts {
   /// Which blocks are near which planes; after order events.
   template <class Real>
   void follow_topology(const State<Real>& state);
+  /// Of particles of an owner, at positions in cells from its block's origin: on which sides they are, a bit
+  /// per plane near it, set where the particle is before it, as a whole number.
   template <class Real>
-  void note_sides(Chunk<Real>& chunk) const;
+  void note_sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t count, Real* sides) const;
+  /// Counts those of a set that are on other sides than was noted.
   template <class Real>
-  void count(const Chunk<Real>& chunk, std::size_t set);
+  void count(std::size_t owner, std::size_t set, const std::array<const Real*, 3>& x, std::size_t count,
+             const Real* sides);
 
   /// Adds what crossed since the last call: particles and kg forth, particles and kg back.
   template <class Real>
   void take(const State<Real>& state, std::size_t plane, double* tallies);
   static constexpr std::size_t kTallies = 4;
 
+  std::size_t bytes() const {
+    return at_origin_.capacity() * sizeof(double) + near_.capacity() * sizeof(std::uint32_t);
+  }
+
  private:
   struct Crossings {
     std::atomic<std::int64_t> forth{0}, back{0};
   };
   template <class Real>
-  std::uint32_t sides(const Chunk<Real>& chunk, std::size_t p) const;
+  std::uint32_t sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t p) const;
 
   std::vector<FlowPlane> planes_;     // with unit normals
   std::vector<double> at_origin_;     // per owner and plane: distance of the block's origin, cells
   std::vector<std::uint32_t> near_;   // per owner: a bit per plane
   std::vector<Crossings> crossings_;  // per plane and set
 };
+
+template <class>
+using FlowCountsOf = FlowCounts;
+inline constexpr TableHandle<"planes of flow", FlowCountsOf> kFlows;
+inline constexpr Handle<"sides of planes", Place::kScratch> kSides;
 
 }  // namespace repose

@@ -54,27 +54,24 @@ void describe(Fields& fields, ForceField& field) {
 
 /// Whether a block of nodes may hold some of the region.
 template <class Real>
-bool reaches(const ForceField& field, const State<Real>& state, const Index3& block) {
-  if (field.region == nullptr) return true;
-  const double radius = 1.5 * std::sqrt(3.0) * state.spacing;
-  return field.region->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <= radius;
+bool reaches(const ForceField& field, const BlockPlace<Real>& place) {
+  return field.region == nullptr || may_hold_nodes(*field.region, place);
 }
 
-template <class Real>
-void act_on_block(const ForceField& field, NodeBlock<Real>& nodes) {
-  if (nodes.time < field.start || nodes.time >= field.end) return;
-  const State<Real>& state = nodes.state;
-  const Index3& block = state.grid.blocks()[nodes.block];
-  if (!reaches(field, state, block)) return;
-  const int flat = state.topology.flat_axis;
-  for (int node = 0; node < kBlockNodes; ++node) {
-    Real* const at = nodes.nodes + node * kNodeValues;
+template <class Access>
+void act_on_block(const ForceField& field, const Access& nodes) {
+  if (nodes.time() < field.start || nodes.time() >= field.end) return;
+  const auto place = nodes.place();
+  if (!reaches(field, place)) return;
+  auto* const values = nodes.write(kNodeVelocity);
+  using Real = std::remove_pointer_t<std::remove_const_t<decltype(values)>>;
+  for (std::size_t node = 0; node < kBlockNodes; ++node) {
+    Real* const at = values + node * kNodeValues;
     if (!(at[0] > Real(0))) continue;
-    Vec3 x = state.world(block, {double(node / 16), double(node / 4 % 4), double(node % 4)});
-    if (flat >= 0) x[flat] = 0.0;
+    const Vec3 x = place.node(node);
     if (field.region != nullptr && field.region->signed_distance(x) > 0.0) continue;
-    Vec3 v = field.act(x, Vec3(double(at[1]), double(at[2]), double(at[3])), double(nodes.dt));
-    if (flat >= 0) v[flat] = 0.0;
+    const Vec3 v = in_plane(field.act(x, Vec3(double(at[1]), double(at[2]), double(at[3])), double(nodes.dt())),
+                            place.flat_axis());
     for (int axis = 0; axis < 3; ++axis) at[1 + axis] = static_cast<Real>(v[axis]);
   }
 }
@@ -130,16 +127,17 @@ Result<void> ForceFields::prepare(const Surroundings& surroundings) {
 
 template <class Real>
 void ForceFields::add_to_nodes(Assembly<Real>& assembly) const {
+  StepPlan<Real>& plan = assembly.plan;
   for (const ForceField& field : list) {
-    assembly.plan.disturbances.push_back(
-        {"force field " + field.name,
-         [field](const State<Real>& state, const Index3& block, double from, double to) {
+    const std::string name = "force field " + field.name;
+    plan.disturbances.push_back(
+        {name, [field](const State<Real>& state, const Index3& block, double from, double to) {
            const bool changes = within_step(field.start, from, to) || within_step(field.end, from, to);
-           return changes && reaches(field, state, block);
+           return changes && reaches(field, BlockPlace<Real>(state, block));
          }});
-    assembly.plan.nodes.push_back(
-        {{"force field " + field.name, "force_fields." + field.name, {"node velocity"}, {"node velocity"}},
-         [field](NodeBlock<Real>& block) { act_on_block(field, block); }});
+    plan.nodes.push_back(plan.passes().over_nodes({name, "force_fields." + field.name}, reads(kNodeVelocity),
+                                                  writes(kNodeVelocity),
+                                                  [field](const auto& at) { act_on_block(field, at); }));
   }
 }
 

@@ -22,22 +22,22 @@ void Gravity::declare(Fields& fields) {
 
 template <class Real>
 void Gravity::add_to_nodes(Assembly<Real>& assembly) const {
-  const auto kernel = assembly.plan.kernels->accelerate;
-  const auto pull = [gravity = *this, kernel](NodeBlock<Real>& block) {
-    const double dt = static_cast<double>(block.dt);
-    // The ramp is taken at the end of the step, so that the first step already has some weight.
-    const double share = gravity.ramp > 0.0 ? std::min(1.0, (block.time + dt) / gravity.ramp) : 1.0;
-    Real change[3];
-    for (int axis = 0; axis < 3; ++axis)
-      change[axis] = static_cast<Real>(dt * share * gravity.acceleration[axis]);
-    kernel(block.nodes, change);
-  };
+  StepPlan<Real>& plan = assembly.plan;
   if (ramp > 0.0) {
-    assembly.plan.disturbances.push_back(
-        {"gravity",
-         [ramp = ramp](const State<Real>&, const Index3&, double from, double) { return from < ramp; }});
+    plan.disturbances.push_back({"gravity", [ramp = ramp](const State<Real>&, const Index3&, double from,
+                                                          double) { return from < ramp; }});
   }
-  assembly.plan.nodes.push_back({{"gravity", "gravity", {"node velocity"}, {"node velocity"}}, pull});
+  plan.nodes.push_back(plan.passes().over_nodes(
+      {"gravity", "gravity"}, reads(kNodeVelocity), writes(kNodeVelocity),
+      [gravity = *this, kernel = plan.kernels->accelerate](const auto& at) {
+        const double dt = static_cast<double>(at.dt());
+        // The ramp is taken at the end of the step, so that the first step already has some weight.
+        const double share = gravity.ramp > 0.0 ? std::min(1.0, (at.time() + dt) / gravity.ramp) : 1.0;
+        Real change[3];
+        for (int axis = 0; axis < 3; ++axis)
+          change[axis] = static_cast<Real>(dt * share * gravity.acceleration[axis]);
+        kernel(at.write(kNodeVelocity), change);
+      }));
 }
 
 template void Gravity::add_to_nodes(Assembly<float>&) const;

@@ -58,30 +58,23 @@ void Hardening::add_before_return(Assembly<Real>& assembly, std::size_t set) con
                                      static_cast<Real>(p->h3 * kRadians),
                                      sand.matching,
                                      static_cast<Real>(sand.cone_of_slope(1.0))};
-  const std::size_t channel = assembly.state.sets[set].extra_index(kShear);
-  assembly.plan.gather[set].push_back(
-      {{"hardening, angle", why(), {kShear, "cone"}, {"cone"}},
-       [kernel = assembly.plan.kernels->harden, law, channel](Chunk<Real>& chunk) {
-         kernel(chunk.set.extra[channel].values.data() + chunk.first, law, chunk.scratch.yield.cone.data(),
-                chunk.particles.count);
-       }});
+  assembly.gather(set).add({"hardening, angle", why()}, reads(kShear, kCone), writes(kCone),
+                           [kernel = assembly.plan.kernels->harden, law](const auto& at) {
+                             kernel(at.read(kShear), law, at.write(kCone), at.count());
+                           });
 }
 
 template <class Real>
 void Hardening::add_after_return(Assembly<Real>& assembly, std::size_t set) const {
   const HardeningParameters* p = find(assembly.sets[set]);
   if (p == nullptr) return;
-  const std::size_t channel = assembly.state.sets[set].extra_index(kShear);
-  assembly.plan.gather[set].push_back(
-      {{"hardening, shear", why(), {kShear, "plastic strain", "strain"}, {kShear}},
-       [channel, in_flight = p->in_flight](Chunk<Real>& chunk) {
-         Real* const q = chunk.set.extra[channel].values.data() + chunk.first;
-         const Real* const plastic = chunk.scratch.yield.plastic.data();
-         const Real* const sheared = chunk.scratch.yield.sheared.data();
-         // A sum of two arrays: what the compiler makes of it is enough.
-         const Real* const gained = in_flight ? plastic : sheared;
-         for (std::size_t i = 0; i < chunk.particles.count; ++i) q[i] += gained[i];
-       }});
+  assembly.gather(set).add({"hardening, shear", why()}, reads(kShear, kPlastic, kSheared), writes(kShear),
+                           [in_flight = p->in_flight](const auto& at) {
+                             Real* const q = at.write(kShear);
+                             // A sum of two arrays: what the compiler makes of it is enough.
+                             const Real* const gained = in_flight ? at.read(kPlastic) : at.read(kSheared);
+                             for (std::size_t i = 0; i < at.count(); ++i) q[i] += gained[i];
+                           });
 }
 
 template void Hardening::add_before_return(Assembly<float>&, std::size_t) const;

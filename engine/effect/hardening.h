@@ -22,7 +22,7 @@ struct Hardening : SandEffect<HardeningParameters> {
   static constexpr const char* kName = "hardening";
   static std::vector<Example> examples();
   /// The channel: q, the sum of the norms of the plastic increments of strain.
-  static constexpr const char* kShear = "plastic_shear";
+  static constexpr Handle<"plastic_shear", Place::kExtra> kShear{};
 
   void declare_in_sand(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }

@@ -231,10 +231,8 @@ const ManufacturedSolution* Manufactured::find(const std::string& body) const {
 
 std::vector<Channel> Manufactured::channels(const SetDescription& set) const {
   const ManufacturedSolution* solution = find(set.name);
-  std::vector<Channel> channels;
-  if (solution == nullptr || !solution->pushes()) return channels;
-  for (const char* name : kReference) channels.push_back({name});
-  return channels;
+  if (solution == nullptr || !solution->pushes()) return {};
+  return {{kX}, {kY}, {kZ}};
 }
 
 template <class Real>
@@ -244,6 +242,7 @@ void Manufactured::initialize(Newcomers<Real>& newcomers) const {
   ParticleSet<Real>& set = newcomers.set;
   const Elasticity& e = newcomers.description.elasticity();
   const double h = 1e-3 * newcomers.surroundings.spacing;
+  constexpr std::array kReference{kX.kName, kY.kName, kZ.kName};
   for (std::size_t p = newcomers.first; p < newcomers.last; ++p) {
     const Vec3 X = newcomers.position(p) - solution->origin;
     const Vec3 v = solution->velocity(X, e);
@@ -279,28 +278,20 @@ template <class Real>
 void Manufactured::add_before_scatter(Assembly<Real>& assembly, std::size_t set) const {
   const ManufacturedSolution* solution = find(assembly.sets[set].name);
   if (solution == nullptr || !solution->pushes()) return;
-  std::array<std::size_t, 3> reference;
-  for (std::size_t i = 0; i < 3; ++i) reference[i] = assembly.state.sets[set].extra_index(kReference[i]);
-  const auto push = [reference, solution = *solution, e = assembly.sets[set].elasticity()](Chunk<Real>& chunk) {
-    const auto value = [&](std::size_t i, std::size_t p) {
-      return double(chunk.set.extra[reference[i]].values[chunk.first + p]);
-    };
-    const double dt = double(chunk.dt);
-    for (std::size_t p = 0; p < chunk.particles.count; ++p) {
-      const Vec3 b = solution.force({value(0, p), value(1, p), value(2, p)}, chunk.time, e);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double v = double(chunk.particles.velocity[i][p]) + dt * b[static_cast<int>(i)];
-        chunk.scratch.velocity[i * kChunk + p] = static_cast<Real>(v);
-      }
-    }
-    for (std::size_t i = 0; i < 3; ++i)
-      chunk.particles.velocity[i] = chunk.scratch.velocity.data() + i * kChunk;
-  };
-  assembly.plan.scatter[set].push_back({{"body force of " + solution->body,
-                                         "manufactured." + solution->body,
-                                         {"velocity", kReference[0], kReference[1], kReference[2]},
-                                         {"velocity"}},
-                                        push});
+  auto passes = assembly.scatter(set);
+  tell_own_velocity(passes);
+  passes.add({"body force of " + solution->body, "manufactured." + solution->body},
+             reads(kToldVelocity, kX, kY, kZ), writes(kToldVelocity),
+             [solution = *solution, e = assembly.sets[set].elasticity()](const auto& at) {
+               const Real *const x = at.read(kX), *const y = at.read(kY), *const z = at.read(kZ);
+               const auto told = at.write(kToldVelocity);
+               const double dt = double(at.dt());
+               for (std::size_t p = 0; p < at.count(); ++p) {
+                 const Vec3 b = solution.force({double(x[p]), double(y[p]), double(z[p])}, at.time(), e);
+                 for (std::size_t i = 0; i < 3; ++i)
+                   told[i][p] = static_cast<Real>(double(told[i][p]) + dt * b[static_cast<int>(i)]);
+               }
+             });
 }
 
 #define REPOSE_INSTANTIATE(Real)                                   \

@@ -42,7 +42,9 @@ struct Manufactured : Effect {
   static constexpr const char* kName = "manufactured";
   static std::vector<Example> examples();
   /// Channels: X, m.
-  static constexpr std::array<const char*, 3> kReference{"reference_x", "reference_y", "reference_z"};
+  static constexpr Handle<"reference_x", Place::kExtra> kX{};
+  static constexpr Handle<"reference_y", Place::kExtra> kY{};
+  static constexpr Handle<"reference_z", Place::kExtra> kZ{};
 
   std::vector<ManufacturedSolution> list;
 

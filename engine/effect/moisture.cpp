@@ -57,15 +57,17 @@ namespace {
 
 /// w changes in particles that lie within a source now. Blocks out of its reach are passed over by one
 /// distance.
-template <class Real>
-void wet(const Moisture::Source& source, Chunk<Real>& chunk, Real* w) {
-  if (chunk.time < source.start || chunk.time >= source.end) return;
-  const double radius = 0.5 * std::sqrt(3.0) * kArenaSide * chunk.spacing;
-  if (source.solid->signed_distance(chunk.world({2.0, 2.0, 2.0})) > radius) return;
-  const Real change = static_cast<Real>(source.rate * static_cast<double>(chunk.dt));
-  for (std::size_t i = 0; i < chunk.particles.count; ++i) {
-    const Real* const* x = chunk.particles.position;
-    if (source.solid->signed_distance(chunk.world({double(x[0][i]), double(x[1][i]), double(x[2][i])})) > 0.0)
+template <class Access>
+void wet(const Moisture::Source& source, const Access& at) {
+  if (at.time() < source.start || at.time() >= source.end) return;
+  const Vec3 middle(kMiddleOfParticles.data());
+  if (source.solid->signed_distance(at.world(middle)) > radius_of_particles() * at.spacing()) return;
+  auto* const w = at.write(Moisture::kSaturation);
+  using Real = std::remove_pointer_t<std::remove_const_t<decltype(w)>>;
+  const auto change = static_cast<Real>(source.rate * static_cast<double>(at.dt()));
+  const auto x = at.read(kPosition);
+  for (std::size_t i = 0; i < at.count(); ++i) {
+    if (source.solid->signed_distance(at.world({double(x[0][i]), double(x[1][i]), double(x[2][i])})) > 0.0)
       continue;
     w[i] = std::clamp(w[i] + change, Real(0), Real(1));
   }
@@ -77,28 +79,25 @@ void wet(const Moisture::Source& source, Chunk<Real>& chunk, Real* w) {
 template <class Real>
 void Moisture::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
   if (sources.empty() || find(assembly.sets[set]) == nullptr) return;
-  const std::size_t channel = assembly.state.sets[set].extra_index(kSaturation);
-  assembly.plan.gather[set].push_back({{"wetting", "wetting", {"position", kSaturation}, {kSaturation}},
-                                       [sources = sources, channel](Chunk<Real>& chunk) {
-                                         Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
-                                         for (const Source& source : sources) wet(source, chunk, w);
-                                       }});
+  assembly.gather(set).add({"wetting", "wetting"}, reads(kPosition, kSaturation), writes(kSaturation),
+                           [sources = sources](const auto& at) {
+                             for (const Source& source : sources) wet(source, at);
+                           });
 }
 
 template <class Real>
 void Moisture::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
   const MoistureParameters* p = find(assembly.sets[set]);
   if (p == nullptr) return;
-  const std::size_t channel = assembly.state.sets[set].extra_index(kSaturation);
   const auto change = static_cast<Real>(assembly.sets[set].sand().cohesion_strain(p->cohesion_change));
-  assembly.plan.gather[set].push_back(
-      {{"moisture", why(), {kSaturation, "cohesion"}, {"cohesion"}}, [channel, change](Chunk<Real>& chunk) {
-         const Real* const w = chunk.set.extra[channel].values.data() + chunk.first;
-         Real* const cohesion = chunk.scratch.yield.cohesion.data();
-         for (std::size_t i = 0; i < chunk.particles.count; ++i) {
-           cohesion[i] = std::max(cohesion[i] + change * w[i], Real(0));
-         }
-       }});
+  assembly.gather(set).add({"moisture", why()}, reads(kSaturation, kCohesion), writes(kCohesion),
+                           [change](const auto& at) {
+                             const Real* const w = at.read(kSaturation);
+                             Real* const cohesion = at.write(kCohesion);
+                             for (std::size_t i = 0; i < at.count(); ++i) {
+                               cohesion[i] = std::max(cohesion[i] + change * w[i], Real(0));
+                             }
+                           });
 }
 
 /// Sand that grows wet or dry may give way, so it does not sleep.
@@ -108,9 +107,7 @@ void Moisture::add_to_nodes(Assembly<Real>& assembly) const {
   assembly.plan.disturbances.push_back(
       {"wetting", [sources = sources](const State<Real>& state, const Index3& block, double from, double to) {
          return std::any_of(sources.begin(), sources.end(), [&](const Source& source) {
-           return source.start < to && source.end > from &&
-                  source.solid->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <=
-                      block_reach(state.spacing);
+           return source.start < to && source.end > from && may_hold_particles(*source.solid, state, block);
          });
        }});
 }

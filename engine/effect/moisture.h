@@ -18,7 +18,7 @@ struct Moisture : SandEffect<MoistureParameters> {
   static constexpr const char* kName = "moisture";
   static std::vector<Example> examples();
   /// The channel: w.
-  static constexpr const char* kSaturation = "saturation";
+  static constexpr Handle<"saturation", Place::kExtra> kSaturation{};
 
   /// A region that wets, or dries where the rate is negative.
   struct Source {

@@ -7,8 +7,10 @@
 #include <limits>
 #include <memory>
 
-#include "engine/effect/contact_law.h"
+#include "engine/effect/solid.h"
 #include "engine/geometry/mesh_sequence.h"
+#include "engine/plan/contact_law.h"
+#include "engine/state/block_extent.h"
 
 namespace repose {
 
@@ -17,13 +19,6 @@ namespace repose {
 /// stencil has left the free nodes: 1.5 cells deep with the quadratic one, two with the cubic. So the wall is
 /// met half a cell early at most, and passed by one (one and a half) at most.
 inline constexpr double kNodeReach = 0.5;  // cells
-
-/// Material of plane strain lies in the plane through the origin; the single node across it stands for that
-/// plane wherever it is.
-inline Vec3 in_plane(Vec3 x, int flat_axis) {
-  if (flat_axis >= 0) x[flat_axis] = 0.0;
-  return x;
-}
 
 class MovingSolid {
  public:

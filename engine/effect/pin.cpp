@@ -26,72 +26,83 @@ struct Held {
 template <class Real>
 class PinnedNodes {
  public:
-  PinnedNodes(std::vector<PinDescription> pins, double spacing, int flat_axis)
-      : pins_(std::move(pins)), spacing_(spacing), flat_axis_(flat_axis) {}
+  explicit PinnedNodes(std::vector<PinDescription> pins) : pins_(std::move(pins)) {}
 
   void follow_topology(const State<Real>& state) {
     begin_.assign(1, 0);
     held_.clear();
     for (const Index3& block : state.grid.blocks()) {
       for (std::uint32_t k = 0; k < pins_.size(); ++k) {
-        if (const std::uint64_t nodes = within(state, block, *pins_[k].solid)) held_.push_back({k, nodes});
+        if (const std::uint64_t nodes = within({state, block}, *pins_[k].solid)) held_.push_back({k, nodes});
       }
       begin_.push_back(static_cast<std::uint32_t>(held_.size()));
     }
   }
 
-  /// Calls visit(node, pin) for the nodes with mass that are held.
+  /// Calls visit(node, pin) for the nodes of a block with mass that are held at a time (s).
   template <class Visit>
-  void for_each_held(const NodeBlock<Real>& block, Visit visit) const {
-    for (std::size_t i = begin_[block.block]; i < begin_[block.block + 1]; ++i) {
+  void for_each_held(std::size_t block, const Real* nodes, double time, Visit visit) const {
+    for (std::size_t i = begin_[block]; i < begin_[block + 1]; ++i) {
       const PinDescription& pin = pins_[held_[i].pin];
-      if (block.time < pin.start || block.time >= pin.end) continue;
+      if (time < pin.start || time >= pin.end) continue;
       for (std::uint64_t rest = held_[i].nodes; rest != 0; rest &= rest - 1) {
         const int node = std::countr_zero(rest);
-        if (block.nodes[node * kNodeValues] > Real(0)) visit(node, pin);
+        if (nodes[node * kNodeValues] > Real(0)) visit(node, pin);
       }
     }
   }
 
-  void hold(NodeBlock<Real>& block) const {
-    for_each_held(block, [&block](int node, const PinDescription& pin) {
-      Real* const v = block.nodes + node * kNodeValues + 1;
-      for (int axis = 0; axis < 3; ++axis) v[axis] = static_cast<Real>(pin.velocity[axis]);
-    });
-  }
-
-  void list(const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) const {
-    for_each_held(block, [&holds](int node, const PinDescription& pin) {
-      Hold<Real> hold;
-      hold.node = node;
-      for (int axis = 0; axis < 3; ++axis) hold.velocity[axis] = static_cast<Real>(pin.velocity[axis]);
-      holds.push_back(hold);
-    });
+  std::size_t bytes() const {
+    return begin_.capacity() * sizeof(std::uint32_t) + held_.capacity() * sizeof(Held);
   }
 
  private:
-  std::uint64_t within(const State<Real>& state, const Index3& block, const Shape& shape) const {
-    // The single node across plane strain stands for the plane through the origin.
-    const auto place = [&](double x, double y, double z) {
-      Vec3 at = state.world(block, {x, y, z});
-      if (flat_axis_ >= 0) at[flat_axis_] = 0.0;
-      return at;
-    };
-    if (shape.signed_distance(place(1.5, 1.5, 1.5)) > 1.5 * std::sqrt(3.0) * spacing_) return 0;
+  std::uint64_t within(const BlockPlace<Real>& place, const Shape& shape) const {
+    if (!may_hold_nodes(shape, place)) return 0;
     std::uint64_t nodes = 0;
-    for (int node = 0; node < kBlockNodes; ++node) {
-      const bool inside = shape.signed_distance(place(node / 16, node / 4 % 4, node % 4)) <= 0.0;
+    for (std::size_t node = 0; node < kBlockNodes; ++node) {
+      const bool inside = shape.signed_distance(place.node(node)) <= 0.0;
       nodes |= std::uint64_t{inside} << node;
     }
     return nodes;
   }
 
   std::vector<PinDescription> pins_;
-  double spacing_;
-  int flat_axis_;
   std::vector<std::uint32_t> begin_;  // per block, in held_
   std::vector<Held> held_;
 };
+
+constexpr TableHandle<"pinned nodes", PinnedNodes> kPinnedNodes;
+
+template <class Real>
+void add_constraints(StepPlan<Real>& plan) {
+  plan.constraints.push_back(plan.passes().constraints(
+      {"pins", "pins"}, reads(kNodeVelocity, kPinnedNodes),
+      [](const auto& at, std::vector<Constraint<Real>>& constraints) {
+        at.read(kPinnedNodes)
+            .for_each_held(at.block(), at.read(kNodeVelocity), at.time(),
+                           [&](int node, const PinDescription& pin) {
+                             Constraint<Real> constraint;
+                             constraint.node = node;
+                             for (int axis = 0; axis < 3; ++axis)
+                               constraint.velocity[axis] = static_cast<Real>(pin.velocity[axis]);
+                             constraints.push_back(constraint);
+                           });
+      }));
+}
+
+template <class Real>
+void add_hold(StepPlan<Real>& plan) {
+  plan.holds.push_back(plan.passes().over_nodes(
+      {"pins", "pins"}, reads(kNodeVelocity, kPinnedNodes), writes(kNodeVelocity), [](const auto& at) {
+        Real* const nodes = at.write(kNodeVelocity);
+        at.read(kPinnedNodes)
+            .for_each_held(at.block(), nodes, at.time(), [&](int node, const PinDescription& pin) {
+              Real* const v = nodes + node * kNodeValues + 1;
+              for (int axis = 0; axis < 3; ++axis) v[axis] = static_cast<Real>(pin.velocity[axis]);
+            });
+      }));
+}
 
 }  // namespace
 
@@ -135,27 +146,25 @@ double Pins::fastest(double from, double to) const {
 
 template <class Real>
 void Pins::add_to_nodes(Assembly<Real>& assembly) const {
-  const auto nodes =
-      std::make_shared<PinnedNodes<Real>>(list, assembly.surroundings.spacing, assembly.surroundings.flat_axis);
-  assembly.plan.order.push_back({{"pinned nodes", "pins", {"topology"}, {"pinned nodes"}},
-                                 [nodes](State<Real>& state) { nodes->follow_topology(state); }});
-  assembly.plan.speeds.push_back([pins = *this](double from, double to) { return pins.fastest(from, to); });
-  assembly.plan.disturbances.push_back(
+  StepPlan<Real>& plan = assembly.plan;
+  plan.tables.template make<Real>(kPinnedNodes, list);
+  plan.order.push_back(
+      plan.passes().after_order({"pinned nodes", "pins"}, reads(kTopology), writes(kPinnedNodes),
+                                [](const auto& at) { at.write(kPinnedNodes).follow_topology(at.state()); }));
+  plan.speeds.push_back([pins = *this](double from, double to) { return pins.fastest(from, to); });
+  plan.disturbances.push_back(
       {"pins", [pins = list](const State<Real>& state, const Index3& block, double from, double to) {
          return std::any_of(pins.begin(), pins.end(), [&](const PinDescription& pin) {
            const bool draws = pin.velocity.norm() > 0.0 && pin.start < to && pin.end > from;
            const bool changes = within_step(pin.start, from, to) || within_step(pin.end, from, to);
-           return (draws || changes) &&
-                  pin.solid->signed_distance(state.world(block, {1.5, 1.5, 1.5})) <= block_reach(state.spacing);
+           return (draws || changes) && may_hold_particles(*pin.solid, state, block);
          });
        }});
-  if (assembly.plan.implicit) {
-    assembly.plan.contacts.push_back(
-        {{"pinned nodes", "pins", {"pinned nodes"}, {}},
-         [nodes](const NodeBlock<Real>& block, std::vector<Hold<Real>>& holds) { nodes->list(block, holds); }});
+  if (plan.implicit) {
+    add_constraints(plan);
+  } else {
+    add_hold(plan);
   }
-  assembly.plan.holds.push_back({{"pins", "pins", {"node velocity", "pinned nodes"}, {"node velocity"}},
-                                 [nodes](NodeBlock<Real>& block) { nodes->hold(block); }});
 }
 
 template void Pins::add_to_nodes(Assembly<float>&) const;

@@ -30,6 +30,7 @@ struct Pins : Effect {
     return list.empty() ? "no entry in 'pins'" : std::to_string(list.size()) + " in 'pins'";
   }
   Result<void> prepare(const Surroundings& surroundings);
+  double top_speed(const std::vector<Solid>&, const Bounds&) const { return fastest(0.0, kForEver); }
 
   /// v* of the nodes within the shapes, after forces and before solids, in the order of the list; and which
   /// nodes those are, after each order event.

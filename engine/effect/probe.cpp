@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/effect/particle_energy.h"
+#include "engine/plan/contact_log.h"
 
 namespace repose {
 namespace {
@@ -45,73 +46,83 @@ void describe(Fields& fields, ProbeDescription& probe) {
   probe.type = static_cast<Type>(chosen);
 }
 
-PassDescription description(const ProbeDescription& probe, std::vector<std::string> reads) {
-  return {"probe " + probe.name, "probes", std::move(reads), {"report"}};
+/// Of a probe of force: s; impulse of the solid on the material, its moment about the origin.
+constexpr std::size_t kForceTallies = 7;
+
+PassName name_of(const ProbeDescription& probe) {
+  return {"probe " + probe.name, "probes"};
+}
+
+/// Impulse and moment of a solid on the material, summed over steps, to what the material does to it.
+void report_force(const ProbeDescription& probe, const double* tallies, std::vector<Measurement>& report) {
+  const double time = tallies[0] > 0.0 ? tallies[0] : 1.0;
+  // Less than nothing rather than a minus sign, which would report -0 where nothing touches.
+  const Vec3 impulse(0.0 - tallies[1], 0.0 - tallies[2], 0.0 - tallies[3]);
+  const Vec3 moment = Vec3(0.0 - tallies[4], 0.0 - tallies[5], 0.0 - tallies[6]) - probe.about.cross(impulse);
+  const auto add = [&](const char* quantity, const char* unit, const Vec3& value) {
+    for (int axis = 0; axis < 3; ++axis) {
+      report.push_back({probe.name, std::string(quantity) + "." + "xyz"[axis], unit, value[axis]});
+    }
+  };
+  add("force", "N", impulse / time);
+  add("torque", "N m", moment / time);
+  add("impulse", "N s", impulse);
 }
 
 template <class Real>
-MeasurePass<Real> force_pass(const ProbeDescription& probe, std::shared_ptr<ContactLog> log,
-                             std::size_t solid) {
-  constexpr std::size_t kTallies = 7;  // s; impulse of the solid on the material, its moment about the origin
-  MeasurePass<Real> pass{description(probe, {"contacts"}), kTallies, {}, {}, {}};
-  pass.begin_frame = [](const State<Real>&, double* tallies) { std::fill_n(tallies, kTallies, 0.0); };
-  pass.after_step = [log, solid](const State<Real>&, double dt, double* tallies) {
-    const ContactSums sums = log->total(solid);
-    tallies[0] += dt;
-    for (int axis = 0; axis < 3; ++axis) {
-      tallies[1 + axis] += sums.impulse[axis];
-      tallies[4 + axis] += sums.moment[axis];
-    }
-  };
-  pass.report = [name = probe.name, about = probe.about](const State<Real>&, const double* tallies,
-                                                         std::vector<Measurement>& report) {
-    const double time = tallies[0] > 0.0 ? tallies[0] : 1.0;
-    // Less than nothing rather than a minus sign, which would report -0 where nothing touches.
-    const Vec3 impulse(0.0 - tallies[1], 0.0 - tallies[2], 0.0 - tallies[3]);
-    const Vec3 moment = Vec3(0.0 - tallies[4], 0.0 - tallies[5], 0.0 - tallies[6]) - about.cross(impulse);
-    const auto add = [&](const char* quantity, const char* unit, const Vec3& value) {
+MeasurePass<Real> force_pass(StepPlan<Real>& plan, const ProbeDescription& probe, std::size_t solid) {
+  return plan.passes().measure(name_of(probe), reads(kContactLog), writes(kReport), [&](auto at) {
+    MeasurePass<Real> pass{.tallies = kForceTallies};
+    pass.begin_frame = [](const State<Real>&, double* tallies) { std::fill_n(tallies, kForceTallies, 0.0); };
+    pass.after_step = [at, solid](const State<Real>&, double dt, double* tallies) {
+      const ContactSums sums = at.read(kContactLog).total(solid);
+      tallies[0] += dt;
       for (int axis = 0; axis < 3; ++axis) {
-        report.push_back({name, std::string(quantity) + "." + "xyz"[axis], unit, value[axis]});
+        tallies[1 + axis] += sums.impulse[axis];
+        tallies[4 + axis] += sums.moment[axis];
       }
     };
-    add("force", "N", impulse / time);
-    add("torque", "N m", moment / time);
-    add("impulse", "N s", impulse);
-  };
-  return pass;
+    pass.report = [probe](const State<Real>&, const double* tallies, std::vector<Measurement>& report) {
+      report_force(probe, tallies, report);
+    };
+    return pass;
+  });
 }
 
 template <class Real>
-MeasurePass<Real> flow_pass(const ProbeDescription& probe, std::shared_ptr<FlowCounts> flows,
-                            std::size_t plane) {
-  MeasurePass<Real> pass{description(probe, {"position"}), FlowCounts::kTallies, {}, {}, {}};
-  pass.begin_frame = [](const State<Real>&, double* tallies) {
-    std::fill_n(tallies, FlowCounts::kTallies, 0.0);
-  };
-  pass.after_step = [flows, plane](const State<Real>& state, double, double* tallies) {
-    flows->take(state, plane, tallies);
-  };
-  pass.report = [name = probe.name](const State<Real>&, const double* tallies,
-                                    std::vector<Measurement>& report) {
-    report.push_back({name, "particles_forth", "", tallies[0]});
-    report.push_back({name, "mass_forth", "kg", tallies[1]});
-    report.push_back({name, "particles_back", "", tallies[2]});
-    report.push_back({name, "mass_back", "kg", tallies[3]});
-  };
-  return pass;
+MeasurePass<Real> flow_pass(StepPlan<Real>& plan, const ProbeDescription& probe, std::size_t plane) {
+  return plan.passes().measure(name_of(probe), reads(kFlows), writes(kFlows, kReport), [&](auto at) {
+    MeasurePass<Real> pass{.tallies = FlowCounts::kTallies};
+    pass.begin_frame = [](const State<Real>&, double* tallies) {
+      std::fill_n(tallies, FlowCounts::kTallies, 0.0);
+    };
+    pass.after_step = [at, plane](const State<Real>& state, double, double* tallies) {
+      at.write(kFlows).take(state, plane, tallies);
+    };
+    pass.report = [name = probe.name](const State<Real>&, const double* tallies,
+                                      std::vector<Measurement>& report) {
+      report.push_back({name, "particles_forth", "", tallies[0]});
+      report.push_back({name, "mass_forth", "kg", tallies[1]});
+      report.push_back({name, "particles_back", "", tallies[2]});
+      report.push_back({name, "mass_back", "kg", tallies[3]});
+    };
+    return pass;
+  });
 }
 
 template <class Real>
-MeasurePass<Real> surface_pass(const ProbeDescription& probe, const Vec3& up) {
-  MeasurePass<Real> pass{description(probe, {"position"}), 0, {}, {}, {}};
-  pass.report = [name = probe.name, line = probe.line, up](const State<Real>& state, const double*,
-                                                           std::vector<Measurement>& report) {
-    const std::vector<double> heights = surface_heights(state, line, up);
-    for (std::size_t k = 0; k < heights.size(); ++k) {
-      report.push_back({name, "height." + std::to_string(k), "m", heights[k]});
-    }
-  };
-  return pass;
+MeasurePass<Real> surface_pass(StepPlan<Real>& plan, const ProbeDescription& probe, const Vec3& up) {
+  return plan.passes().measure(name_of(probe), reads(kPosition), writes(kReport), [&](auto) {
+    MeasurePass<Real> pass;
+    pass.report = [name = probe.name, line = probe.line, up](const State<Real>& state, const double*,
+                                                             std::vector<Measurement>& report) {
+      const std::vector<double> heights = surface_heights(state, line, up);
+      for (std::size_t k = 0; k < heights.size(); ++k) {
+        report.push_back({name, "height." + std::to_string(k), "m", heights[k]});
+      }
+    };
+    return pass;
+  });
 }
 
 /// Sums over the particles of a state: kinetic, affine, elastic and potential energy.
@@ -123,11 +134,10 @@ struct EnergySum {
 
   std::array<double, 4> operator()(const State<Real>& state) const {
     std::array<double, 4> all{};
-    const auto owners = state.grid.owners();
     for (std::size_t k = 0; k < state.sets.size(); ++k) {
       const ParticleSet<Real>& set = state.sets[k];
-      for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-        const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+      for (std::size_t owner = 0; owner < state.grid.owners().size(); ++owner) {
+        const Index3& block = state.grid.coordinates_of_owner(owner);
         for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
           const Vec3 x = state.world(block, set, p);
           const ParticleEnergy energy = particle_energy(set, p, laws[k], affine_inertia);
@@ -143,27 +153,35 @@ struct EnergySum {
 };
 
 template <class Real>
-MeasurePass<Real> energy_pass(const ProbeDescription& probe, std::shared_ptr<ContactLog> log,
-                              EnergySum<Real> sum) {
-  MeasurePass<Real> pass{description(probe, {"position", "velocity", "strain"}), 2, {}, {}, {}};
-  pass.begin_frame = [sum](const State<Real>& state, double* tallies) {  // all there was; work of solids
-    const auto energy = sum(state);
-    tallies[0] = energy[0] + energy[1] + energy[2] + energy[3];
-    tallies[1] = 0.0;
-  };
-  pass.after_step = [log](const State<Real>&, double, double* tallies) {
-    for (std::size_t solid = 0; solid < log->solids(); ++solid) tallies[1] += log->total(solid).work;
-  };
-  pass.report = [name = probe.name, sum](const State<Real>& state, const double* tallies,
-                                         std::vector<Measurement>& report) {
-    const auto energy = sum(state);
-    constexpr const char* kNames[] = {"kinetic", "affine", "elastic", "potential"};
-    for (std::size_t k = 0; k < energy.size(); ++k) report.push_back({name, kNames[k], "J", energy[k]});
-    report.push_back({name, "work_of_solids", "J", tallies[1]});
-    const double now = energy[0] + energy[1] + energy[2] + energy[3];
-    report.push_back({name, "dissipated", "J", tallies[0] + tallies[1] - now});
-  };
-  return pass;
+MeasurePass<Real> energy_pass(StepPlan<Real>& plan, const ProbeDescription& probe, bool solids,
+                              const EnergySum<Real>& sum) {
+  const auto log = when(solids, kContactLog);
+  return plan.passes().measure(
+      name_of(probe), reads(kPosition, kParticleVelocity, kHenckyStrain, log), writes(kReport), [&](auto at) {
+        MeasurePass<Real> pass{.tallies = 2};  // all that there was; work of solids
+        pass.begin_frame = [sum](const State<Real>& state, double* tallies) {
+          const auto energy = sum(state);
+          tallies[0] = energy[0] + energy[1] + energy[2] + energy[3];
+          tallies[1] = 0.0;
+        };
+        if (solids) {
+          pass.after_step = [at](const State<Real>&, double, double* tallies) {
+            const ContactLog& contacts = at.read(kContactLog);
+            for (std::size_t solid = 0; solid < contacts.solids(); ++solid)
+              tallies[1] += contacts.total(solid).work;
+          };
+        }
+        pass.report = [name = probe.name, sum](const State<Real>& state, const double* tallies,
+                                               std::vector<Measurement>& report) {
+          const auto energy = sum(state);
+          constexpr const char* kNames[] = {"kinetic", "affine", "elastic", "potential"};
+          for (std::size_t k = 0; k < energy.size(); ++k) report.push_back({name, kNames[k], "J", energy[k]});
+          report.push_back({name, "work_of_solids", "J", tallies[1]});
+          const double now = energy[0] + energy[1] + energy[2] + energy[3];
+          report.push_back({name, "dissipated", "J", tallies[0] + tallies[1] - now});
+        };
+        return pass;
+      });
 }
 
 }  // namespace
@@ -187,7 +205,7 @@ void Probes::declare(Fields& fields) {
 }
 
 Result<void> Probes::prepare(const Surroundings& surroundings) {
-  std::vector<FlowPlane> planes;
+  std::size_t flows = 0;
   for (const ProbeDescription& probe : list) {
     const auto refuse = [&](const std::string& key, const std::string& message) {
       return Error{ErrorKind::kBadScene, message, surroundings.where("probes." + probe.name + key)};
@@ -201,25 +219,32 @@ Result<void> Probes::prepare(const Surroundings& surroundings) {
       if (!(line.cross(surroundings.up).norm() > 1e-9))
         return refuse(".to", "must not lie above or below \"from\"; the line runs along the ground");
     }
-    if (probe.type == Type::kFlow) planes.push_back(probe.plane);
-    if (planes.size() > FlowCounts::kMost)
+    if (probe.type == Type::kFlow && ++flows > FlowCounts::kMost)
       return refuse("", "is one flow too many; a scene may have " + std::to_string(FlowCounts::kMost));
   }
-  if (!planes.empty()) flows_ = std::make_shared<FlowCounts>(std::move(planes));
   return {};
+}
+
+bool Probes::any(Type type) const {
+  return std::any_of(list.begin(), list.end(),
+                     [type](const ProbeDescription& probe) { return probe.type == type; });
 }
 
 template <class Real>
 void Probes::add_to_nodes(Assembly<Real>& assembly) const {
   StepPlan<Real>& plan = assembly.plan;
-  const bool contacts = std::any_of(list.begin(), list.end(), [](const ProbeDescription& probe) {
-    return probe.type == Type::kForce || probe.type == Type::kEnergy;
-  });
-  if (contacts) assembly.contact_log = std::make_shared<ContactLog>(assembly.solids.size());
-  if (flows_ != nullptr) {
-    flows_->expect_sets(assembly.sets.size());
-    plan.order.push_back({{"blocks near planes of flow", "probes", {"topology"}, {"planes of flow"}},
-                          [flows = flows_](State<Real>& state) { flows->follow_topology(state); }});
+  const bool solids = !assembly.solids.empty();
+  if (solids && (any(Type::kForce) || any(Type::kEnergy)))
+    plan.tables.template make<Real>(kContactLog, assembly.solids.size());
+  if (any(Type::kFlow)) {
+    std::vector<FlowPlane> planes;
+    for (const ProbeDescription& probe : list) {
+      if (probe.type == Type::kFlow) planes.push_back(probe.plane);
+    }
+    plan.tables.template make<Real>(kFlows, std::move(planes)).expect_sets(assembly.sets.size());
+    plan.order.push_back(
+        plan.passes().after_order({"blocks near planes of flow", "probes"}, reads(kTopology), writes(kFlows),
+                                  [](const auto& at) { at.write(kFlows).follow_topology(at.state()); }));
   }
   EnergySum<Real> energy{{},
                          assembly.surroundings.gravity,
@@ -231,17 +256,17 @@ void Probes::add_to_nodes(Assembly<Real>& assembly) const {
       case Type::kForce: {
         std::size_t solid = 0;
         while (assembly.solids[solid].name != probe.collider) ++solid;
-        plan.measures.push_back(force_pass<Real>(probe, assembly.contact_log, solid));
+        plan.measures.push_back(force_pass<Real>(plan, probe, solid));
         break;
       }
       case Type::kFlow:
-        plan.measures.push_back(flow_pass<Real>(probe, flows_, flow++));
+        plan.measures.push_back(flow_pass<Real>(plan, probe, flow++));
         break;
       case Type::kSurface:
-        plan.measures.push_back(surface_pass<Real>(probe, assembly.surroundings.up));
+        plan.measures.push_back(surface_pass<Real>(plan, probe, assembly.surroundings.up));
         break;
       case Type::kEnergy:
-        plan.measures.push_back(energy_pass<Real>(probe, assembly.contact_log, energy));
+        plan.measures.push_back(energy_pass<Real>(plan, probe, solids, energy));
         break;
     }
   }
@@ -249,17 +274,20 @@ void Probes::add_to_nodes(Assembly<Real>& assembly) const {
 
 template <class Real>
 void Probes::add_before_motion(Assembly<Real>& assembly, std::size_t set) const {
-  if (flows_ == nullptr) return;
-  assembly.plan.gather[set].push_back({{"sides of planes", "probes", {"position", "planes of flow"}, {"sides"}},
-                                       [flows = flows_](Chunk<Real>& chunk) { flows->note_sides(chunk); }});
+  if (!any(Type::kFlow)) return;
+  assembly.gather(set).add(
+      {"sides of planes", "probes"}, reads(kPosition, kFlows), writes(kSides), [](const auto& at) {
+        at.read(kFlows).note_sides(at.owner(), at.read(kPosition), at.count(), at.write(kSides));
+      });
 }
 
 template <class Real>
 void Probes::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
-  if (flows_ == nullptr) return;
-  assembly.plan.gather[set].push_back(
-      {{"count flow", "probes", {"position", "sides"}, {"crossings"}},
-       [flows = flows_, set](Chunk<Real>& chunk) { flows->count(chunk, set); }});
+  if (!any(Type::kFlow)) return;
+  assembly.gather(set).add(
+      {"count flow", "probes"}, reads(kPosition, kSides), writes(kFlows), [set](const auto& at) {
+        at.write(kFlows).count(at.owner(), set, at.read(kPosition), at.count(), at.read(kSides));
+      });
 }
 
 #define REPOSE_INSTANTIATE(Real)                                               \

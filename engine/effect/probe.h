@@ -47,7 +47,7 @@ struct Probes : Effect {
   void add_after_motion(Assembly<Real>& assembly, std::size_t set) const;
 
  private:
-  std::shared_ptr<FlowCounts> flows_;  // null where no flow is asked for
+  bool any(ProbeDescription::Type type) const;
 };
 
 }  // namespace repose

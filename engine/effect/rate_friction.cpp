@@ -32,12 +32,11 @@ void RateFriction::add_before_return(Assembly<Real>& assembly, std::size_t set) 
   const RateConstants<Real> law{
       static_cast<Real>(sand.cone_of_slope(std::sqrt(2.0) / 3.0 * p->rise)), static_cast<Real>(p->threshold),
       static_cast<Real>(p->grain_diameter * std::sqrt(2.0 * p->grain_density / bulk))};
-  assembly.plan.gather[set].push_back({{"rate friction", why(), {"trial strain", "cohesion", "cone"}, {"cone"}},
-                                       [kernel = assembly.plan.kernels->quicken, law](Chunk<Real>& chunk) {
-                                         auto& yield = chunk.scratch.yield;
-                                         kernel(chunk.particles.strain, yield.cohesion.data(), law, chunk.dt,
-                                                yield.cone.data(), chunk.particles.count);
-                                       }});
+  assembly.gather(set).add({"rate friction", why()}, reads(kTrialStrain, kCohesion, kCone), writes(kCone),
+                           [kernel = assembly.plan.kernels->quicken, law](const auto& at) {
+                             kernel(at.read(kTrialStrain).data(), at.read(kCohesion), law, at.dt(),
+                                    at.write(kCone), at.count());
+                           });
 }
 
 template void RateFriction::add_before_return(Assembly<float>&, std::size_t) const;

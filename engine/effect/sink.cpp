@@ -51,10 +51,6 @@ class SinkRuntime {
   using FoundInBlock = std::vector<std::vector<Found>>;
 
   void look(const State<Real>& state, std::size_t owner, FoundInBlock& found) const;
-  Vec3 in_plane(Vec3 x) const {
-    if (flat_axis_ >= 0) x[flat_axis_] = 0.0;  // material lies in the plane through the origin
-    return x;
-  }
 
   std::vector<BuiltSink> sinks_;
   std::size_t first_outlet_;  // where they begin in the ledger
@@ -64,9 +60,9 @@ class SinkRuntime {
 /// Particles of a block that lie in sinks; most blocks are far from all.
 template <class Real>
 void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundInBlock& found) const {
-  const Index3 block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
-  const double reach = 0.5 * std::sqrt(3.0) * kArenaSide * state.spacing;  // of its particles from its middle
-  const Vec3 middle = in_plane(state.world(block, {2.0, 2.0, 2.0}));
+  const Index3 block = state.grid.coordinates_of_owner(owner);
+  const double reach = radius_of_particles() * state.spacing;
+  const Vec3 middle = in_plane(state.world(block, kMiddleOfParticles), flat_axis_);
   std::vector<std::uint32_t> near;
   for (std::size_t s = 0; s < sinks_.size(); ++s) {
     if (sinks_[s].works(state.counters.time) && sinks_[s].distance(middle) < reach)
@@ -77,7 +73,7 @@ void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundI
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     const ParticleSet<Real>& set = state.sets[k];
     for (std::uint32_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-      const Vec3 x = in_plane(state.world(block, set, p));
+      const Vec3 x = in_plane(state.world(block, set, p), flat_axis_);
       const auto in =
           std::find_if(near.begin(), near.end(), [&](std::uint32_t s) { return sinks_[s].distance(x) < 0.0; });
       if (in != near.end()) found[k].push_back({p, *in});
@@ -146,7 +142,7 @@ void Sinks::add_to_nodes(Assembly<Real>& assembly) const {
   const auto runtime = std::make_shared<SinkRuntime<Real>>(std::move(sinks), assembly.first_outlet,
                                                            assembly.surroundings.flat_axis);
   assembly.plan.events.push_back(
-      {{"sinks", "sinks", {"position"}, {"particles"}},
+      {PassMaker<Real>::describe({"sinks", "sinks"}, reads(kPosition), writes(kParticles)),
        [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },
        [runtime](State<Real>& state, ParticleEdit<Real>& edit) { runtime->run(state, edit); }});
 }

@@ -7,17 +7,11 @@
 
 #include "engine/geometry/motion.h"
 #include "engine/geometry/shape.h"
+#include "engine/plan/constraint.h"
 
 namespace repose {
 
 class MeshSequence;
-
-/// What a node may do at the surface.
-enum class Contact {
-  kSticky,      ///< moves with the solid
-  kSlip,        ///< neither enters nor leaves, slides along
-  kSeparating,  ///< does not enter, leaves freely, slides along
-};
 
 struct Solid {
   std::string name;

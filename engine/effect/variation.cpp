@@ -96,8 +96,8 @@ Result<void> Variation::prepare(const Surroundings& surroundings) {
 std::vector<Channel> Variation::channels(const SetDescription& set) const {
   const VariationParameters* p = find(set);
   std::vector<Channel> channels;
-  if (p != nullptr && p->varies_friction()) channels.push_back({kFriction, 1.0});
-  if (p != nullptr && p->varies_cohesion()) channels.push_back({kCohesion, 1.0});
+  if (p != nullptr && p->varies_friction()) channels.push_back({kFrictionFactor, 1.0});
+  if (p != nullptr && p->varies_cohesion()) channels.push_back({kCohesionFactor, 1.0});
   return channels;
 }
 
@@ -114,28 +114,25 @@ void Variation::initialize(Newcomers<Real>& newcomers) const {
       factor[i] = static_cast<Real>(grid == nullptr ? smooth : smooth * grid->at(x));
     }
   };
-  if (p->varies_friction()) fill(kFriction, p->friction, 2 * seed, p->of_friction.get());
-  if (p->varies_cohesion()) fill(kCohesion, p->cohesion, 2 * seed + 1, p->of_cohesion.get());
+  if (p->varies_friction()) fill(kFrictionFactor.kName, p->friction, 2 * seed, p->of_friction.get());
+  if (p->varies_cohesion()) fill(kCohesionFactor.kName, p->cohesion, 2 * seed + 1, p->of_cohesion.get());
 }
 
 template <class Real>
 void Variation::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
   const VariationParameters* p = find(assembly.sets[set]);
   if (p == nullptr) return;
-  const auto add = [&](const char* channel, const char* quantity, auto array) {
-    const std::size_t index = assembly.state.sets[set].extra_index(channel);
-    assembly.plan.gather[set].push_back(
-        {{std::string("variation of ") + quantity, why(), {channel, quantity}, {quantity}},
-         [index, array](Chunk<Real>& chunk) {
-           const Real* const factor = chunk.set.extra[index].values.data() + chunk.first;
-           Real* const values = array(chunk.scratch);
-           for (std::size_t i = 0; i < chunk.particles.count; ++i) values[i] *= factor[i];
-         }});
+  auto passes = assembly.gather(set);
+  const auto add = [&](auto factor, auto quantity) {
+    passes.add({std::string("variation of ") + decltype(quantity)::kName, why()}, reads(factor, quantity),
+               writes(quantity), [factor, quantity](const auto& at) {
+                 const Real* const factors = at.read(factor);
+                 Real* const values = at.write(quantity);
+                 for (std::size_t i = 0; i < at.count(); ++i) values[i] *= factors[i];
+               });
   };
-  if (p->varies_friction())
-    add(kFriction, "cone", [](Scratch<Real>& scratch) { return scratch.yield.cone.data(); });
-  if (p->varies_cohesion())
-    add(kCohesion, "cohesion", [](Scratch<Real>& scratch) { return scratch.yield.cohesion.data(); });
+  if (p->varies_friction()) add(kFrictionFactor, kCone);
+  if (p->varies_cohesion()) add(kCohesionFactor, kCohesion);
 }
 
 template void Variation::initialize(Newcomers<float>&) const;

@@ -23,8 +23,8 @@ struct VariationParameters {
 struct Variation : SandEffect<VariationParameters> {
   static constexpr const char* kName = "variation";
   static std::vector<Example> examples();
-  static constexpr const char* kFriction = "friction_factor";
-  static constexpr const char* kCohesion = "cohesion_factor";
+  static constexpr Handle<"friction_factor", Place::kExtra> kFrictionFactor{};
+  static constexpr Handle<"cohesion_factor", Place::kExtra> kCohesionFactor{};
 
   void declare_in_sand(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }

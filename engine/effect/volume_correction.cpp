@@ -15,25 +15,20 @@ void VolumeCorrection::declare(Fields& fields) {
 
 template <class Real>
 void VolumeCorrection::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
-  const std::size_t channel = assembly.state.sets[set].extra_index(kGained);
-  const auto open = [kernel = assembly.plan.kernels->open_volume, channel](Chunk<Real>& chunk) {
-    const Real* gained = chunk.set.extra[channel].values.data() + chunk.first;
-    kernel(chunk.particles.strain, gained, chunk.scratch.value.data(), chunk.particles.count);
-  };
-  assembly.plan.gather[set].push_back(
-      {{"volume correction, before", kName, {"trial strain", kGained}, {"trial strain", "trace of trial"}},
-       open});
+  assembly.gather(set).add(
+      {"volume correction, before", kName}, reads(kTrialStrain, kVolumeGained),
+      writes(kTrialStrain, kTraceOfTrial), [kernel = assembly.plan.kernels->open_volume](const auto& at) {
+        kernel(at.write(kTrialStrain).data(), at.read(kVolumeGained), at.write(kTraceOfTrial), at.count());
+      });
 }
 
 template <class Real>
 void VolumeCorrection::add_after_return(Assembly<Real>& assembly, std::size_t set) const {
-  const std::size_t channel = assembly.state.sets[set].extra_index(kGained);
-  const auto close = [kernel = assembly.plan.kernels->close_volume, channel](Chunk<Real>& chunk) {
-    Real* gained = chunk.set.extra[channel].values.data() + chunk.first;
-    kernel(chunk.particles.strain, gained, chunk.scratch.value.data(), chunk.particles.count);
-  };
-  assembly.plan.gather[set].push_back(
-      {{"volume correction, after", kName, {"strain", "trace of trial"}, {kGained}}, close});
+  assembly.gather(set).add(
+      {"volume correction, after", kName}, reads(kHenckyStrain, kTraceOfTrial), writes(kVolumeGained),
+      [kernel = assembly.plan.kernels->close_volume](const auto& at) {
+        kernel(at.read(kHenckyStrain).data(), at.write(kVolumeGained), at.read(kTraceOfTrial), at.count());
+      });
 }
 
 template void VolumeCorrection::add_before_return(Assembly<float>&, std::size_t) const;

@@ -13,7 +13,6 @@ struct VolumeCorrection : Effect {
   static constexpr const char* kName = "volume_correction";
   static std::vector<Example> examples();
   /// The channel that remembers: log volume gained per particle.
-  static constexpr const char* kGained = kVolumeGained;
 
   bool enabled = false;  ///< set by the presence of the scene key
 
@@ -22,7 +21,7 @@ struct VolumeCorrection : Effect {
   std::string why() const { return enabled ? "key 'volume_correction'" : "no key 'volume_correction'"; }
 
   std::vector<Channel> channels(const SetDescription& set) const {
-    return enabled && set.yields() ? std::vector<Channel>{{kGained}} : std::vector<Channel>{};
+    return enabled && set.yields() ? std::vector<Channel>{{kVolumeGained}} : std::vector<Channel>{};
   }
   template <class Real>
   void add_before_return(Assembly<Real>& assembly, std::size_t set) const;

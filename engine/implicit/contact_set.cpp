@@ -15,11 +15,11 @@ auto at_node(Real* vector, int node) {
                                                                                        node * kNodeValues + 1);
 }
 /// Sine and cosine of the angle, ten degrees, below which two walls are one. Of a node held by both J would be
-/// shared out into a push and a pull many times as large; the pass that follows minds what is left.
+/// shared out into a push and a pull many times as large; act() minds what is left.
 constexpr double kApart = 0.17, kAlike = 0.985;
 
 template <class Real>
-auto normal_of(const Hold<Real>& hold) {
+auto normal_of(const Constraint<Real>& hold) {
   return Eigen::Map<const Eigen::Matrix<Real, 3, 1>>(hold.normal);
 }
 
@@ -37,17 +37,20 @@ void ContactSet<Real>::clear(std::size_t blocks) {
 }
 
 template <class Real>
-void ContactSet<Real>::set_block(std::size_t block, const std::vector<Hold<Real>>& holds) {
+void ContactSet<Real>::set_block(std::size_t block, const std::vector<Constraint<Real>>& constraints,
+                                 const Real* begin) {
   auto& nodes = nodes_[block];
-  for (const Hold<Real>& hold : holds) {
+  for (const Constraint<Real>& law : constraints) {
     auto node = nodes.begin();
-    while (node != nodes.end() && node->index != hold.node) ++node;
+    while (node != nodes.end() && node->index != law.node) ++node;
     if (node == nodes.end()) {
       nodes.emplace_back();
       node = nodes.end() - 1;
-      node->index = hold.node;
+      node->index = law.node;
     }
-    node->contacts.push_back({hold, hold.kind != Hold<Real>::Kind::kAgainst, Real(0)});
+    Constraint<Real> hold = law.relative_to(begin + law.node * kNodeValues + 1);
+    if (!rubs_) hold.friction = Real(0);
+    node->contacts.push_back({law, hold, law.contact != Contact::kSeparating, Real(0)});
   }
   for (Node& node : nodes) span(node);
 }
@@ -74,9 +77,9 @@ void ContactSet<Real>::span(Node& node) {
     ++node.rank;
   };
   for (std::size_t k = 0; k < node.contacts.size(); ++k) {
-    const Hold<Real>& hold = node.contacts[k].hold;
+    const Constraint<Real>& hold = node.contacts[k].hold;
     if (!node.contacts[k].active) continue;
-    if (hold.kind != Hold<Real>::Kind::kAll) {
+    if (hold.contact != Contact::kSticky) {
       add(normal_of(hold), hold.bound, static_cast<int>(k));
       continue;
     }
@@ -88,7 +91,7 @@ void ContactSet<Real>::span(Node& node) {
 /// that hold nothing of their own, push is J n.
 template <class Real>
 void ContactSet<Real>::share_out(Node& node) {
-  for (Contact& contact : node.contacts)
+  for (Listed& contact : node.contacts)
     contact.push = contact.active ? normal_of(contact.hold).dot(node.reaction) : Real(0);
   Vector3 rest = node.reaction;
   for (int k = node.rank - 1; k >= 0; --k) {
@@ -123,16 +126,16 @@ void ContactSet<Real>::project(std::size_t block, Real* x) const {
 }
 
 /// mu J_n of an active contact of a node; none of one whose normal another has had before it: where solids meet
-/// in one surface, the first of the scene takes the whole impulse, as in the pass that follows.
+/// in one surface, the first of the scene takes the whole impulse, as in act().
 template <class Real>
 Real ContactSet<Real>::friction_bound(const Node& node, std::size_t k) {
-  const auto& [hold, active, push] = node.contacts[k];
+  const auto& [law, hold, active, push] = node.contacts[k];
   if (!active || !(hold.friction > Real(0))) return Real(0);
   for (std::size_t before = 0; before < k; ++before) {
     const bool same = normal_of(node.contacts[before].hold).dot(normal_of(hold)) > Real(kAlike);
     if (same && node.contacts[before].active) return Real(0);
   }
-  return hold.friction * (hold.kind == Hold<Real>::Kind::kAgainst ? std::max(push, Real(0)) : std::abs(push));
+  return hold.friction * (hold.contact == Contact::kSeparating ? std::max(push, Real(0)) : std::abs(push));
 }
 
 /// B, over all active contacts of a node.
@@ -145,9 +148,9 @@ Real ContactSet<Real>::friction_bound(const Node& node) {
 
 /// The contact whose friction can bear most, or null: with several, the one whose velocity counts.
 template <class Real>
-const Hold<Real>* ContactSet<Real>::rough(const Node& node) {
+const Constraint<Real>* ContactSet<Real>::rough(const Node& node) {
   if (node.rank == 3) return nullptr;
-  const Hold<Real>* roughest = nullptr;
+  const Constraint<Real>* roughest = nullptr;
   Real most = Real(0);
   for (std::size_t k = 0; k < node.contacts.size(); ++k) {
     const Real bound = friction_bound(node, k);
@@ -160,7 +163,7 @@ const Hold<Real>* ContactSet<Real>::rough(const Node& node) {
 
 /// The velocity of a node along its walls, against one of them.
 template <class Real>
-typename ContactSet<Real>::Vector3 ContactSet<Real>::slip(const Node& node, const Hold<Real>& hold,
+typename ContactSet<Real>::Vector3 ContactSet<Real>::slip(const Node& node, const Constraint<Real>& hold,
                                                           const Real* v) {
   return along_walls(node, at_node(v, node.index) - Eigen::Map<const Vector3>(hold.velocity));
 }
@@ -174,7 +177,7 @@ void ContactSet<Real>::bear(std::size_t block, const Real* nodes, const Real* v,
     share_out(node);
     node.evaluated = {};
     at = counts = asked;
-    const Hold<Real>* const wall = rough(node);
+    const Constraint<Real>* const wall = rough(node);
     if (wall == nullptr) continue;
     const Real mass = nodes[node.index * kNodeValues], bound = friction_bound(node);
     if (!(mass > Real(0))) continue;
@@ -223,7 +226,7 @@ void ContactSet<Real>::precondition(std::size_t block, Real* z) const {
 template <class Real>
 void ContactSet<Real>::release(std::size_t block) {
   for (Node& node : nodes_[block]) {
-    for (Contact& contact : node.contacts) contact.active = contact.hold.kind != Hold<Real>::Kind::kAgainst;
+    for (Listed& contact : node.contacts) contact.active = contact.hold.contact != Contact::kSeparating;
     span(node);
   }
 }
@@ -234,7 +237,7 @@ int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
-    for (auto& [hold, active, push] : node.contacts) {
+    for (auto& [law, hold, active, push] : node.contacts) {
       if (active) continue;
       const Real along = normal_of(hold).dot(at_node(v, node.index));
       if (along < hold.bound - kRounding * (std::abs(hold.bound) + at_node(v, node.index).norm())) {
@@ -254,8 +257,8 @@ int ContactSet<Real>::let_go(std::size_t block) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
-    for (auto& [hold, active, push] : node.contacts) {
-      if (!active || hold.kind != Hold<Real>::Kind::kAgainst || !(push < Real(0))) continue;
+    for (auto& [law, hold, active, push] : node.contacts) {
+      if (!active || hold.contact != Contact::kSeparating || !(push < Real(0))) continue;
       active = false;
       ++changed;
     }
@@ -270,7 +273,7 @@ int ContactSet<Real>::stop_held(std::size_t block, const Real* nodes, const Real
   int stopped = 0;
   for (const Node& node : nodes_[block]) {
     if (!node.evaluated.slips) continue;
-    const Hold<Real>* const wall = rough(node);
+    const Constraint<Real>* const wall = rough(node);
     if (wall == nullptr) continue;
     const Vector3 u = slip(node, *wall, v), asked = at_node(r, node.index) + node.evaluated.impulse;
     if ((nodes[node.index * kNodeValues] * u - asked).norm() > friction_bound(node)) continue;
@@ -284,7 +287,7 @@ template <class Real>
 void ContactSet<Real>::stop_turning(std::size_t block, const Real* from, Real* to) const {
   for (const Node& node : nodes_[block]) {
     if (!node.tangent.slips) continue;
-    const Hold<Real>* const wall = rough(node);
+    const Constraint<Real>* const wall = rough(node);
     if (wall == nullptr) continue;
     const Vector3 u = slip(node, *wall, to);
     if (!(u.dot(slip(node, *wall, from)) > Real(0))) at_node(to, node.index) -= u;
@@ -297,6 +300,18 @@ std::int64_t ContactSet<Real>::directions() const {
   for (const auto& nodes : nodes_) {
     for (const Node& node : nodes) sum += node.rank;
   }
+  return sum;
+}
+
+template <class Real>
+std::size_t ContactSet<Real>::bytes() const {
+  std::size_t sum = nodes_.capacity() * sizeof(nodes_[0]) + tangents_.capacity() * sizeof(Tangents);
+  for (const auto& nodes : nodes_) {
+    sum += nodes.capacity() * sizeof(Node);
+    for (const Node& node : nodes) sum += node.contacts.capacity() * sizeof(Listed);
+  }
+  for (const Tangents& tangents : tangents_)
+    sum += (tangents.rub.capacity() + tangents.inverse.capacity()) * sizeof(AtNode);
   return sum;
 }
 

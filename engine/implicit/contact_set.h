@@ -2,13 +2,14 @@
 // an active set: one is taken up when its node would pass its bound and let go when it would have to pull (the
 // conditions of Klar et al. 2016, section 8: G >= 0, reaction >= 0, and one of the two zero). Of a node in a
 // corner the impulse is shared out along the normals of its walls, which need not be orthogonal. Nodes that are
-// held may rub (engine/implicit/coulomb.h).
+// held may rub (engine/implicit/friction.h).
 #pragma once
 
 #include <vector>
 
-#include "engine/implicit/coulomb.h"
-#include "engine/plan/implicit_plan.h"
+#include "engine/implicit/friction.h"
+#include "engine/plan/constraint.h"
+#include "kernels/layout/node_block.h"
 
 namespace repose {
 
@@ -19,10 +20,13 @@ class ContactSet {
  public:
   using Vector3 = Eigen::Matrix<Real, 3, 1>;
 
+  /// `rubs`: whether friction acts within the solve, or follows it.
+  explicit ContactSet(bool rubs = true) : rubs_(rubs) {}
+
   /// Forgets all; `blocks` is the number of blocks of nodes.
   void clear(std::size_t blocks);
-  /// Adds what may hold the nodes of a block.
-  void set_block(std::size_t block, const std::vector<Hold<Real>>& holds);
+  /// Adds what may hold the nodes of a block, for changes of the velocities in `begin`.
+  void set_block(std::size_t block, const std::vector<Constraint<Real>>& constraints, const Real* begin);
 
   /// Velocities of a block's nodes: brought to what their holds prescribe.
   void obey(std::size_t block, Real* v) const;
@@ -67,13 +71,22 @@ class ContactSet {
   /// iteration can tell.
   void stop_turning(std::size_t block, const Real* from, Real* to) const;
 
+  /// Of the velocities `v` that were found, `nodes` with their masses: takes the impulses that the solve has
+  /// given to contacts, and lets contacts act as in an explicit step (engine/plan/contact_law.h), which stops
+  /// what sticks to the last bit. Calls record(node, mass), a recorder, for each. `rubbed`: the same after
+  /// friction, where that follows the solve; may be `v`.
+  template <class Record>
+  void act(std::size_t block, Real dt, const Real* nodes, Real* v, Real* rubbed, Record record) const;
+
   bool any(std::size_t block) const { return !nodes_[block].empty(); }
   /// Directions that are held, over all nodes.
   std::int64_t directions() const;
+  std::size_t bytes() const;
 
  private:
-  struct Contact {
-    Hold<Real> hold;
+  struct Listed {
+    Constraint<Real> law;   // as it was listed
+    Constraint<Real> hold;  // of changes of velocity
     bool active = false;
     Real push = 0;  // its part of J along its normal, N s
   };
@@ -85,7 +98,7 @@ class ContactSet {
     Vector3 normal[3];    // by which each came in, and of which contact that is
     int contact[3] = {};  // -1: of one that holds all
     Vector3 reaction;     // J
-    std::vector<Contact> contacts;
+    std::vector<Listed> contacts;
     Friction<Real> evaluated, tangent;
   };
   /// What linear solves ask for in every iteration, without the rest of a node.
@@ -100,13 +113,46 @@ class ContactSet {
   static void span(Node& node);
   static void share_out(Node& node);
   static Vector3 along_walls(const Node& node, Vector3 x);
-  static const Hold<Real>* rough(const Node& node);
-  static Vector3 slip(const Node& node, const Hold<Real>& hold, const Real* v);
+  static const Constraint<Real>* rough(const Node& node);
+  static Vector3 slip(const Node& node, const Constraint<Real>& hold, const Real* v);
   static Real friction_bound(const Node& node, std::size_t k);
   static Real friction_bound(const Node& node);
 
+  bool rubs_;
   std::vector<std::vector<Node>> nodes_;  // per block
   std::vector<Tangents> tangents_;        // per block
 };
+
+template <class Real>
+template <class Record>
+void ContactSet<Real>::act(std::size_t block, Real dt, const Real* nodes, Real* v, Real* rubbed,
+                           Record record) const {
+  std::vector<Real> impulse;  // over mass, per contact of a node
+  for (const Node& node : nodes_[block]) {
+    const std::size_t at = static_cast<std::size_t>(node.index) * kNodeValues;
+    const Real mass = nodes[at];
+    if (!(mass > Real(0))) continue;
+    Real *const bar = v + at + 1, *const tilde = rubbed + at + 1;
+    for (int axis = 0; axis < 3; ++axis) bar[axis] -= node.reaction[axis] / mass;
+    auto recorder = record(static_cast<std::size_t>(node.index), mass);
+    impulse.clear();
+    for (const Listed& contact : node.contacts) {
+      const Constraint<Real>& law = contact.law;
+      recorder.before(bar);
+      impulse.push_back(constrain(law.contact, beside(law), law.velocity, dt, bar));
+      if (law.solid != Constraint<Real>::kNoSolid)
+        recorder.after(static_cast<std::size_t>(law.solid), law.velocity, bar);
+    }
+    std::copy_n(bar, 3, tilde);
+    for (std::size_t k = 0; k < impulse.size(); ++k) {
+      const Constraint<Real>& law = node.contacts[k].law;
+      const Real bound = law.friction * impulse[k];
+      if (!(bound > Real(0))) continue;
+      recorder.before(tilde);
+      rub(law.normal, law.velocity, bound, tilde);
+      recorder.after(static_cast<std::size_t>(law.solid), law.velocity, tilde);
+    }
+  }
+}
 
 }  // namespace repose

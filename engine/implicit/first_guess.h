@@ -19,7 +19,7 @@ class FirstGuess {
   using Vector = NodeField<Real>;
 
   /// `tolerance` is Newton's: a guess that meets it is not bettered.
-  FirstGuess(BlockSweep<Real>& sweep, ContactSet<Real>& contacts, MomentumBalance<Real>& balance,
+  FirstGuess(ParticleSweep<Real>& sweep, ContactSet<Real>& contacts, MomentumBalance<Real>& balance,
              double tolerance)
       : sweep_(sweep), contacts_(contacts), balance_(balance), tolerance_(tolerance) {}
 
@@ -43,7 +43,7 @@ class FirstGuess {
   void place(Kind kind, Vector& dv);
   bool foresee_contacts(Vector& dv);
 
-  BlockSweep<Real>& sweep_;
+  ParticleSweep<Real>& sweep_;
   ContactSet<Real>& contacts_;
   MomentumBalance<Real>& balance_;
   double tolerance_;

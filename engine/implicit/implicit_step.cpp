@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/plan/contact_log.h"
+
 namespace repose {
 
 template <class Real>
-ImplicitStep<Real>::ImplicitStep(const StepPlan<Real>& plan, Threads& threads,
-                                 std::vector<Scratch<Real>>& scratch, Profile& profile)
-    : plan_(plan),
-      implicit_(*plan.implicit),
+ImplicitStep<Real>::ImplicitStep(BlockSweep<Real>& blocks, Profile& profile)
+    : plan_(blocks.plan()),
+      implicit_(*plan_.implicit),
       profile_(profile),
-      sweep_(plan, threads, scratch),
-      system_(sweep_, contacts_, plan.implicit->settings.preconditioner),
-      balance_(*plan.implicit, sweep_, contacts_, system_),
-      guess_(sweep_, contacts_, balance_, plan.implicit->settings.tolerance) {}
+      sweep_(blocks),
+      contacts_(plan_.advection == Advection::kAfterFriction),
+      system_(sweep_, contacts_, implicit_.settings.preconditioner),
+      balance_(implicit_, sweep_, contacts_, system_),
+      guess_(sweep_, contacts_, balance_, implicit_.settings.tolerance) {}
 
 /// Vectors of the blocks as they now lie.
 template <class Real>
@@ -26,14 +28,26 @@ void ImplicitStep<Real>::follow_topology() {
   for (Vector* vector : {&v_, &step_, &trial_, &right_}) *vector = system_.vector();
   symmetric_.reset();
   general_.reset();
+  if (symmetric(implicit_.settings)) {
+    symmetric_.emplace(system_);
+  } else {
+    general_.emplace(system_, General(system_, static_cast<int>(directions())));
+  }
 }
 
 template <class Real>
-ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
+void ImplicitStep<Real>::reserve() {
+  sweep_.begin();
+  if (orders_ != sweep_.state().counters.orders) follow_topology();
+}
+
+template <class Real>
+ImplicitReport ImplicitStep<Real>::solve() {
   const PhaseTimer timer(profile_, Phase::kNewton);
-  sweep_.begin(state, dt);
+  sweep_.begin();
+  const State<Real>& state = sweep_.state();
   if (orders_ != state.counters.orders) follow_topology();
-  collect_holds();
+  collect_constraints();
   balance_.begin();
   const std::optional<double> norm = guess_.find(v_);
 
@@ -51,21 +65,15 @@ ImplicitReport ImplicitStep<Real>::solve(State<Real>& state, Real dt) {
 }
 
 template <class Real>
-void ImplicitStep<Real>::collect_holds() {
+void ImplicitStep<Real>::collect_constraints() {
   State<Real>& state = sweep_.state();
   contacts_.clear(state.grid.size());
-  if (plan_.contacts.empty()) return;
+  if (plan_.constraints.empty()) return;
   sweep_.for_each_block([&](std::size_t b) {
-    const NodeBlock<Real> block{state, b, state.nodes.block(b), sweep_.dt(), state.counters.time};
-    std::vector<Hold<Real>> holds;
-    for (const auto& pass : plan_.contacts) pass.run(block, holds);
-    const Real* const begin = state.before_forces.block(b);
-    for (Hold<Real>& hold : holds) {
-      hold.relative_to(begin + hold.node * kNodeValues + 1);
-      // v-bar, by which particles then move, is known only where friction follows the solve.
-      if (plan_.advection == Advection::kBeforeFriction) hold.friction = Real(0);
-    }
-    contacts_.set_block(b, holds);
+    const NodeBlock<Real> block{state, b, state.nodes.block(b), sweep_.dt()};
+    std::vector<Constraint<Real>> list;
+    for (const auto& pass : plan_.constraints) pass.run(block, list);
+    contacts_.set_block(b, list, state.before_forces.block(b));
   });
 }
 
@@ -84,14 +92,8 @@ typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve(double share, Vect
   constexpr double kEnough = 0.5;
   const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), false, kEnough};
   SolveReport report;
-  if (symmetric(settings)) {
-    if (!symmetric_) symmetric_.emplace(system_);
-    report = symmetric_->solve(system_, right_, step, stop);
-  } else {
-    using General = GeneralizedConjugateResidual<TangentSystem<Real>>;
-    if (!general_) general_.emplace(system_, General(system_, static_cast<int>(settings.directions)));
-    report = general_->solve(system_, right_, step, stop);
-  }
+  report = symmetric_ ? symmetric_->solve(system_, right_, step, stop)
+                      : general_->solve(system_, right_, step, stop);
   if (!report.converged()) linear_ = report.status;
   const bool best_so_far = report.status == SolveStatus::kCapped || report.status == SolveStatus::kStagnated ||
                            report.final_norm <= kEnough * report.initial_norm;
@@ -125,29 +127,56 @@ bool ImplicitStep<Real>::change_contacts(Vector& v) {
   return true;
 }
 
-/// Writes the velocities to the nodes.
+/// Writes the velocities to the nodes, as contacts leave them.
 template <class Real>
 void ImplicitStep<Real>::publish(const Vector& v) {
-  sweep_.for_each_block([&](std::size_t b) {
-    Real* const nodes = sweep_.state().nodes.block(b);
-    const Real *const from = v.block(b), *const begin = sweep_.state().before_forces.block(b);
-    for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
-      if (!(nodes[at] > Real(0))) continue;
-      for (std::size_t c = 1; c < kNodeValues; ++c) nodes[at + c] = begin[at + c] + from[at + c];
-    }
-    contacts_.for_each_reaction(b, [&](int node, const auto& reaction) {
-      Real* const at = nodes + node * kNodeValues;
-      if (!(at[0] > Real(0))) return;
-      for (int c = 0; c < 3; ++c) at[1 + c] -= reaction[c] / at[0];
-    });
-  });
+  sweep_.for_each_block([&](std::size_t b) { publish_block(b, v.block(b)); });
 }
 
 template <class Real>
-std::size_t ImplicitStep<Real>::bytes() const {
-  std::size_t vectors = 4 + (symmetric_ ? 7 : 0);
-  if (general_) vectors += 2 * static_cast<std::size_t>(implicit_.settings.directions) + 5;
-  return vectors * v_.bytes() + system_.bytes() + balance_.bytes();
+void ImplicitStep<Real>::publish_block(std::size_t b, const Real* v) {
+  State<Real>& state = sweep_.state();
+  Real* const nodes = state.nodes.block(b);
+  const Real* const begin = state.before_forces.block(b);
+  for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
+    if (!(nodes[at] > Real(0))) continue;
+    for (std::size_t c = 1; c < kNodeValues; ++c) nodes[at + c] = begin[at + c] + v[at + c];
+  }
+  auto& after = state.after_friction;
+  const bool apart = plan_.advection == Advection::kBeforeFriction && !after.slot.empty() && after.slot[b] >= 0;
+  Real rubbed[kBlockValues];
+  std::copy_n(nodes, kBlockValues, rubbed);
+  ContactLog* const log = plan_.tables.template get<Real>(kContactLog);
+  ContactSums* const sums = log != nullptr && log->has(b) ? log->begin(b) : nullptr;
+  const BlockPlace<Real> place(state, state.grid.blocks()[b]);
+  const auto act = [&](auto record) {
+    contacts_.act(b, sweep_.dt(), nodes, nodes, apart ? rubbed : nodes, record);
+  };
+  if (sums != nullptr) {
+    act([&](std::size_t node, Real mass) {
+      return ContactRecorder{sums, static_cast<double>(mass), place.node(node)};
+    });
+  } else {
+    act([](std::size_t, Real) { return NoContactRecorder{}; });
+  }
+  if (!apart) return;
+  const bool differs = !std::equal(nodes, nodes + kBlockValues, rubbed);
+  after.live[static_cast<std::size_t>(after.slot[b])] = differs ? 1 : 0;
+  if (differs) std::copy_n(rubbed, kBlockValues, after.block(b));
+}
+
+template <class Real>
+std::size_t ImplicitStep<Real>::block_bytes(const State<Real>& state) const {
+  const std::size_t krylov = symmetric_ ? kSymmetricVectors : kGeneralVectors + 2 * directions();
+  // The motion of the last step is the state's, but for the first step.
+  const std::size_t motion = state.last_motion.blocks.empty() ? 2 : 0;
+  return (kOwnVectors + krylov + motion) * v_.bytes() + contacts_.bytes() + system_.block_bytes() +
+         balance_.block_bytes();
+}
+
+template <class Real>
+std::size_t ImplicitStep<Real>::bytes(const State<Real>& state) const {
+  return block_bytes(state) + system_.particle_bytes() + balance_.particle_bytes() + sweep_.bytes();
 }
 
 template class ImplicitStep<float>;

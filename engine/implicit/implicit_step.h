@@ -23,21 +23,24 @@ class ImplicitStep {
  public:
   using Vector = NodeField<Real>;
 
-  ImplicitStep(const StepPlan<Real>& plan, Threads& threads, std::vector<Scratch<Real>>& scratch,
-               Profile& profile);
+  ImplicitStep(BlockSweep<Real>& blocks, Profile& profile);
   ImplicitStep(const ImplicitStep&) = delete;
   ImplicitStep& operator=(const ImplicitStep&) = delete;
 
-  /// Solves for a step of dt from the state's nodes, which hold mass and v^free, and `before_forces`, with v^n.
-  /// On return nodes hold what the passes that hold nodes are to start from: v less the impulse of their
-  /// contacts, which those passes then bring about themselves, and record.
-  ImplicitReport solve(State<Real>& state, Real dt);
+  /// Solves the step of the sweep from its state's nodes, which hold mass and v^free, and `before_forces`, with
+  /// v^n. If a solution is found, nodes hold v, `after_friction` what friction leaves where that follows the
+  /// solve, and the contact log what contacts did.
+  ImplicitReport solve();
   /// The step that was solved last is made: the next begins from what it came to.
   void accept() { guess_.keep(v_); }
 
   /// After a state was loaded: what was known of its topology may be of another.
   void forget() { orders_ = -1; }
-  std::size_t bytes() const;
+  /// Makes room for the state that the sweep has begun.
+  void reserve();
+  std::size_t bytes(const State<Real>& state) const;
+  /// Of them, those that grow with the blocks.
+  std::size_t block_bytes(const State<Real>& state) const;
 
   // What Newton's method asks for (engine/solve/newton.h).
   std::optional<double> evaluate(const Vector& v) { return balance_.evaluate(v); }
@@ -59,19 +62,25 @@ class ImplicitStep {
 
  private:
   void follow_topology();
-  void collect_holds();
+  void collect_constraints();
   void publish(const Vector& v);
+  void publish_block(std::size_t block, const Real* v);
+
+  using General = GeneralizedConjugateResidual<TangentSystem<Real>>;
+  /// Vectors of nodes: of the solve, and of the linear solvers, beside two for each direction that is kept.
+  static constexpr std::size_t kOwnVectors = 4, kSymmetricVectors = 7, kGeneralVectors = 5;
+  std::size_t directions() const { return static_cast<std::size_t>(implicit_.settings.directions); }
 
   const StepPlan<Real>& plan_;
   const ImplicitPlan<Real>& implicit_;
   Profile& profile_;
-  BlockSweep<Real> sweep_;
+  ParticleSweep<Real> sweep_;
   ContactSet<Real> contacts_;
   TangentSystem<Real> system_;
   MomentumBalance<Real> balance_;
   FirstGuess<Real> guess_;
   std::optional<LinearSolve<TangentSystem<Real>>> symmetric_;
-  std::optional<LinearSolve<TangentSystem<Real>, GeneralizedConjugateResidual<TangentSystem<Real>>>> general_;
+  std::optional<LinearSolve<TangentSystem<Real>, General>> general_;
 
   Vector v_, step_, trial_, right_;  // of dv
   std::int64_t orders_ = -1;         // of the topology that vectors are made for

@@ -20,7 +20,7 @@ double square(const Real* v) {
 }  // namespace
 
 template <class Real>
-MomentumBalance<Real>::MomentumBalance(const ImplicitPlan<Real>& plan, BlockSweep<Real>& sweep,
+MomentumBalance<Real>::MomentumBalance(const ImplicitPlan<Real>& plan, ParticleSweep<Real>& sweep,
                                        ContactSet<Real>& contacts, TangentSystem<Real>& system)
     : sweep_(sweep), contacts_(contacts), system_(system), particles_(plan, sweep, system) {}
 
@@ -34,9 +34,10 @@ template <class Real>
 void MomentumBalance<Real>::begin() {
   forget_scale();
   particles_.begin();
-  sweep_.over_particles(
-      {.from = &sweep_.state().before_forces},
-      [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>&) { particles_.keep_begin(set, chunk); });
+  sweep_.over_particles({.from = &sweep_.state().before_forces},
+                        [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
+                          particles_.keep_begin(set, chunk, own);
+                        });
 }
 
 /// Of S to impulses.
@@ -49,7 +50,7 @@ template <class Real>
 std::optional<double> MomentumBalance<Real>::evaluate(const Vector& dv) {
   std::atomic<bool> sound = true;
   sweep_.over_particles({.from = &dv, .to = &residual_},
-                        [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+                        [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
                           if (!particles_.stress(set, chunk, own))
                             sound.store(false, std::memory_order_relaxed);
                           sweep_.push(chunk, own, push_scale(chunk));
@@ -101,7 +102,7 @@ template <class Real>
 double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
   const bool resolves = particles_.resolves();
   sweep_.over_particles({.to = resolves ? &residual_ : nullptr},
-                        [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
+                        [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
                           particles_.linearize(set, chunk, own, near);
                           if (resolves) sweep_.push(chunk, own, push_scale(chunk));
                         });
@@ -120,23 +121,24 @@ double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
 template <class Real>
 double MomentumBalance<Real>::reach(const Vector& step, double length) {
   std::vector<double> least(sweep_.state().grid.owners().size(), 1.0);
-  sweep_.over_particles({.from = &step}, [&](std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>&) {
-    Real* along[kAffineComponents];
-    for (std::size_t k = 0; k < kAffineComponents; ++k) along[k] = chunk.scratch.gradient.data() + k * kChunk;
-    sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), along);
-    const double dt = static_cast<double>(sweep_.dt());
-    double& bound = least[chunk.owner];
-    const auto gradient = particles_.gradient(set, chunk);
-    for (std::size_t p = 0; p < chunk.particles.count; ++p) {
-      Mat3 a = Mat3::Identity(), b = Mat3::Zero();
-      for (std::size_t k = 0; k < kAffineComponents; ++k) {
-        const auto row = static_cast<Eigen::Index>(k / 3), column = static_cast<Eigen::Index>(k % 3);
-        b(row, column) = dt * static_cast<double>(along[k][p]);
-        a(row, column) += dt * static_cast<double>(gradient[k][p]) - length * b(row, column);
-      }
-      bound = std::min(bound, length_to_determinant(a, b, kLeastDeterminant));
-    }
-  });
+  sweep_.over_particles(
+      {.from = &step}, [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
+        Real* along[kAffineComponents];
+        for (std::size_t k = 0; k < kAffineComponents; ++k) along[k] = own.gradient + k * kChunk;
+        sweep_.gather_gradient(chunk, own.arena, along);
+        const double dt = static_cast<double>(sweep_.dt());
+        double& bound = least[chunk.owner];
+        const auto gradient = particles_.gradient(set, chunk);
+        for (std::size_t p = 0; p < chunk.particles.count; ++p) {
+          Mat3 a = Mat3::Identity(), b = Mat3::Zero();
+          for (std::size_t k = 0; k < kAffineComponents; ++k) {
+            const auto row = static_cast<Eigen::Index>(k / 3), column = static_cast<Eigen::Index>(k % 3);
+            b(row, column) = dt * static_cast<double>(along[k][p]);
+            a(row, column) += dt * static_cast<double>(gradient[k][p]) - length * b(row, column);
+          }
+          bound = std::min(bound, length_to_determinant(a, b, kLeastDeterminant));
+        }
+      });
   return *std::min_element(least.begin(), least.end());
 }
 

@@ -19,7 +19,7 @@ class MomentumBalance {
  public:
   using Vector = NodeField<Real>;
 
-  MomentumBalance(const ImplicitPlan<Real>& plan, BlockSweep<Real>& sweep, ContactSet<Real>& contacts,
+  MomentumBalance(const ImplicitPlan<Real>& plan, ParticleSweep<Real>& sweep, ContactSet<Real>& contacts,
                   TangentSystem<Real>& system);
 
   /// After each order event.
@@ -50,7 +50,8 @@ class MomentumBalance {
   /// last lies `length` along it.
   double reach(const Vector& step, double length);
 
-  std::size_t bytes() const { return residual_.bytes() + particles_.bytes(); }
+  std::size_t particle_bytes() const { return particles_.bytes(); }
+  std::size_t block_bytes() const { return residual_.bytes(); }
 
  private:
   static constexpr double kLeastDeterminant = 0.02;  // for reach(): twice what the kernel refuses
@@ -59,7 +60,7 @@ class MomentumBalance {
   std::array<double, 3> finish_residual(const Vector& dv);
   std::array<double, 3> finish_block(std::size_t block, const Real* dv, Real* r);
 
-  BlockSweep<Real>& sweep_;
+  ParticleSweep<Real>& sweep_;
   ContactSet<Real>& contacts_;
   TangentSystem<Real>& system_;
   ParticleResponse<Real> particles_;

@@ -5,16 +5,18 @@
 namespace repose {
 
 template <class Real>
-ParticleResponse<Real>::ParticleResponse(const ImplicitPlan<Real>& plan, BlockSweep<Real>& sweep,
+ParticleResponse<Real>::ParticleResponse(const ImplicitPlan<Real>& plan, ParticleSweep<Real>& sweep,
                                          TangentSystem<Real>& system)
     : plan_(plan),
       returns_(plan.settings.mode == TangentMode::kExact || plan.settings.mode == TangentMode::kProjected),
       sweep_(sweep),
       system_(system) {
   const bool unilateral = plan.settings.mode == TangentMode::kUnilateral;
+  ScratchLayout layout = sweep.plan().scratch;
+  for (std::size_t k = 0; k < kYieldHandles.size(); ++k) yield_[k] = layout.place(kYieldHandles[k]);
   for (const SetResponse<Real>& set : plan.sets) {
-    resolves_ = resolves_ || (returns_ && set.kernels.resolve);
-    fades_ = fades_ || (unilateral && set.kernels.fading_stress);
+    resolves_ = resolves_ || (returns_ && set.material.kernels.resolve);
+    fades_ = fades_ || (unilateral && set.material.kernels.fading_stress);
   }
 }
 
@@ -61,19 +63,20 @@ std::array<const Real*, kAffineComponents> ParticleResponse<Real>::gradient(std:
 }
 
 template <class Real>
-void ParticleResponse<Real>::keep_begin(std::size_t set, const Chunk<Real>& chunk) {
+void ParticleResponse<Real>::keep_begin(std::size_t set, const Chunk<Real>& chunk,
+                                        const ImplicitScratch<Real>& own) {
   Real* begin[kAffineComponents];
   find(at_begin_, kAffineComponents, 0, set, chunk, begin);
-  sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), begin);
+  sweep_.gather_gradient(chunk, own.arena, begin);
 }
 
 /// Keeps the gradient and the trial strain of a chunk, of dv in its arena.
 template <class Real>
-void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk) {
+void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
   const Trial trial = trial_of(set, chunk);
   Real* begin[kAffineComponents];
   find(at_begin_, kAffineComponents, 0, set, chunk, begin);
-  sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), trial.gradient, {begin[0], kAffineComponents});
+  sweep_.gather_gradient(chunk, own.arena, trial.gradient, {begin[0], kAffineComponents});
   const std::size_t count = chunk.particles.count;
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
     for (std::size_t p = 0; p < count; ++p) trial.gradient[k][p] += begin[k][p];
@@ -81,26 +84,26 @@ void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk) {
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(chunk.particles.strain[k], count, trial.strain[k]);
   MaterialInput<Real> in{};
-  in.constants = plan_.sets[set].constants.get();
+  in.constants = plan_.sets[set].material.constants.get();
   in.dt = sweep_.dt();
   in.count = count;
   std::copy_n(trial.strain, kStrainComponents, in.strain);
   std::copy_n(trial.gradient, kAffineComponents, in.gradient);
-  plan_.sets[set].kernels.trial(in);
+  plan_.sets[set].material.kernels.trial(in);
 }
 
 /// What kernels take: strain in own.strain, for them to work on, stress to go to scratch.
 template <class Real>
 TangentInput<Real> ParticleResponse<Real>::input(std::size_t set, Chunk<Real>& chunk,
-                                                 ImplicitScratch<Real>& own) const {
+                                                 const ImplicitScratch<Real>& own) const {
   const SetResponse<Real>& response = plan_.sets[set];
   TangentInput<Real> in{{}, {}, response.unilateral, system_.tangent(set, chunk)};
-  in.material.constants = response.constants.get();
+  in.material.constants = response.material.constants.get();
   in.material.dt = sweep_.dt();
   in.material.count = chunk.particles.count;
   for (std::size_t k = 0; k < kStrainComponents; ++k) {
-    in.material.strain[k] = own.strain.data() + k * kChunk;
-    in.material.stress[k] = chunk.scratch.stress.data() + k * kChunk;
+    in.material.strain[k] = own.strain + k * kChunk;
+    in.material.stress[k] = own.stress + k * kChunk;
   }
   return in;
 }
@@ -115,15 +118,15 @@ void ParticleResponse<Real>::prepare_return(std::size_t set, Chunk<Real>& chunk,
   std::copy_n(in.material.gradient, kAffineComponents, chunk.moving_gradient);
   for (const auto& pass : response.before_return) pass.run(chunk);
   if (!response.shaped) return;
-  auto& yield = chunk.scratch.yield;
-  in.surface = {yield.cone.data(),    yield.cohesion.data(), yield.dilatancy.data(),
-                yield.plastic.data(), yield.sheared.data(),  yield.dilated.data()};
+  Real* yield[kYieldHandles.size()];
+  for (std::size_t k = 0; k < kYieldHandles.size(); ++k) yield[k] = chunk.scratch.at(yield_[k]);
+  in.surface = {yield[0], yield[1], yield[2], yield[3], yield[4], yield[5]};
 }
 
 /// Where the velocities of the last stress() put the particles of a chunk.
 template <class Real>
 TangentInput<Real> ParticleResponse<Real>::at_trial(std::size_t set, Chunk<Real>& chunk,
-                                                    ImplicitScratch<Real>& own) {
+                                                    const ImplicitScratch<Real>& own) {
   const Trial trial = trial_of(set, chunk);
   TangentInput<Real> in = input(set, chunk, own);
   std::copy_n(trial.gradient, kAffineComponents, in.material.gradient);
@@ -136,7 +139,7 @@ TangentInput<Real> ParticleResponse<Real>::at_trial(std::size_t set, Chunk<Real>
 /// Where their own rate of deformation puts them: C, where that is a gradient, or grad v^n.
 template <class Real>
 TangentInput<Real> ParticleResponse<Real>::at_rate(std::size_t set, Chunk<Real>& chunk,
-                                                   ImplicitScratch<Real>& own) {
+                                                   const ImplicitScratch<Real>& own) {
   Real* begin[kAffineComponents];
   find(at_begin_, kAffineComponents, 0, set, chunk, begin);
   const bool keeps = sweep_.keeps_gradient();
@@ -144,7 +147,7 @@ TangentInput<Real> ParticleResponse<Real>::at_rate(std::size_t set, Chunk<Real>&
   std::copy_n(keeps ? chunk.particles.affine : begin, kAffineComponents, in.material.gradient);
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(chunk.particles.strain[k], in.material.count, in.material.strain[k]);
-  plan_.sets[set].kernels.trial(in.material);
+  plan_.sets[set].material.kernels.trial(in.material);
   prepare_return(set, chunk, in);
   return in;
 }
@@ -153,7 +156,7 @@ TangentInput<Real> ParticleResponse<Real>::at_rate(std::size_t set, Chunk<Real>&
 template <class Real>
 bool ParticleResponse<Real>::stress_of(std::size_t set, const TangentInput<Real>& in,
                                        Real* const (&matrix)[kAffineComponents]) const {
-  const MaterialKernels<Real>& kernels = plan_.sets[set].kernels;
+  const MaterialKernels<Real>& kernels = plan_.sets[set].material.kernels;
   const MaterialInput<Real>& material = in.material;
   if (in.surface.cone != nullptr) {
     kernels.project_shaped(material, in.surface);
@@ -169,23 +172,23 @@ bool ParticleResponse<Real>::stress_of(std::size_t set, const TangentInput<Real>
 }
 
 template <class Real>
-bool ParticleResponse<Real>::stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) {
-  try_strain(set, chunk);
+bool ParticleResponse<Real>::stress(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
+  try_strain(set, chunk, own);
   Real* matrix[kAffineComponents];
-  for (std::size_t k = 0; k < kAffineComponents; ++k) matrix[k] = own.matrix.data() + k * kChunk;
+  for (std::size_t k = 0; k < kAffineComponents; ++k) matrix[k] = own.matrix + k * kChunk;
   return stress_of(set, at_trial(set, chunk, own), matrix);
 }
 
 /// Puts the strain of `in` where the next model is to be made, and into `ahead` how far dt grad v is from
 /// there.
 template <class Real>
-void ParticleResponse<Real>::resolve(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own,
+void ParticleResponse<Real>::resolve(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own,
                                      const TangentInput<Real>& in, Real* const (&ahead)[kAffineComponents]) {
   const Model model = model_of(set, chunk);
   const std::size_t count = in.material.count;
   Real* foretold[kAffineComponents];
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
-    foretold[k] = own.matrix.data() + k * kChunk;
+    foretold[k] = own.matrix + k * kChunk;
     for (std::size_t p = 0; p < count; ++p)
       ahead[k][p] = in.material.dt * in.material.gradient[k][p] - model.map[k][p];
   }
@@ -193,13 +196,13 @@ void ParticleResponse<Real>::resolve(std::size_t set, Chunk<Real>& chunk, Implic
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
     for (std::size_t p = 0; p < count; ++p) foretold[k][p] += model.stress[k][p];
   }
-  plan_.sets[set].kernels.resolve(in, foretold, ahead);
+  plan_.sets[set].material.kernels.resolve(in, foretold, ahead);
 }
 
 /// Where the next model of a chunk is made, and into `ahead` how far dt grad v is from there.
 template <class Real>
 TangentInput<Real> ParticleResponse<Real>::place_model(std::size_t set, Chunk<Real>& chunk,
-                                                       ImplicitScratch<Real>& own, bool near,
+                                                       const ImplicitScratch<Real>& own, bool near,
                                                        Real* const (&ahead)[kAffineComponents]) {
   const std::size_t count = chunk.particles.count;
   if (near && !modelled_) {
@@ -221,9 +224,9 @@ TangentInput<Real> ParticleResponse<Real>::place_model(std::size_t set, Chunk<Re
 }
 
 template <class Real>
-void ParticleResponse<Real>::linearize(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own,
+void ParticleResponse<Real>::linearize(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own,
                                        bool near) {
-  const MaterialKernels<Real>& kernels = plan_.sets[set].kernels;
+  const MaterialKernels<Real>& kernels = plan_.sets[set].material.kernels;
   const auto make_tangents = kernels.linearize[static_cast<std::size_t>(plan_.settings.mode)];
   if (!resolves_) {
     make_tangents(at_trial(set, chunk, own));
@@ -233,8 +236,8 @@ void ParticleResponse<Real>::linearize(std::size_t set, Chunk<Real>& chunk, Impl
   const Model model = model_of(set, chunk);
   Real *ahead[kAffineComponents], *matrix[kAffineComponents];
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
-    ahead[k] = chunk.scratch.gradient.data() + k * kChunk;
-    matrix[k] = own.matrix.data() + k * kChunk;
+    ahead[k] = own.gradient + k * kChunk;
+    matrix[k] = own.matrix + k * kChunk;
   }
   TangentInput<Real> in = place_model(set, chunk, own, near && kernels.resolve != nullptr, ahead);
   make_tangents(in);

@@ -16,7 +16,7 @@ namespace repose {
 template <class Real>
 class ParticleResponse {
  public:
-  ParticleResponse(const ImplicitPlan<Real>& plan, BlockSweep<Real>& sweep, TangentSystem<Real>& system);
+  ParticleResponse(const ImplicitPlan<Real>& plan, ParticleSweep<Real>& sweep, TangentSystem<Real>& system);
 
   /// After each order event.
   void follow_topology();
@@ -31,13 +31,13 @@ class ParticleResponse {
   // Passes over a chunk.
 
   /// Keeps grad v^n, of the velocities in the arena.
-  void keep_begin(std::size_t set, const Chunk<Real>& chunk);
+  void keep_begin(std::size_t set, const Chunk<Real>& chunk, const ImplicitScratch<Real>& own);
   /// S at the change of velocity in the arena, in own.matrix; false where a particle would be turned inside
   /// out.
-  bool stress(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
+  bool stress(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own);
   /// Makes the tangents of the system those at the velocities of the last stress(), or `near` them. If
   /// resolves(), own.matrix is S at those velocities as the linear model has it.
-  void linearize(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own, bool near);
+  void linearize(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own, bool near);
   /// All chunks are linearised.
   void end_linearize() { modelled_ = true; }
   /// grad v of the last stress(), 1/s, by rows.
@@ -62,24 +62,29 @@ class ParticleResponse {
             const Chunk<Real>& chunk, Real* (&found)[values]) const;
   Trial trial_of(std::size_t set, const Chunk<Real>& chunk);
   Model model_of(std::size_t set, const Chunk<Real>& chunk);
-  void try_strain(std::size_t set, Chunk<Real>& chunk);
-  TangentInput<Real> input(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own) const;
+  void try_strain(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own);
+  TangentInput<Real> input(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) const;
   void prepare_return(std::size_t set, Chunk<Real>& chunk, TangentInput<Real>& in) const;
-  TangentInput<Real> at_trial(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
-  TangentInput<Real> at_rate(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own);
-  TangentInput<Real> place_model(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own, bool near,
-                                 Real* const (&ahead)[kAffineComponents]);
-  void resolve(std::size_t set, Chunk<Real>& chunk, ImplicitScratch<Real>& own, const TangentInput<Real>& in,
-               Real* const (&ahead)[kAffineComponents]);
+  TangentInput<Real> at_trial(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own);
+  TangentInput<Real> at_rate(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own);
+  TangentInput<Real> place_model(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own,
+                                 bool near, Real* const (&ahead)[kAffineComponents]);
+  void resolve(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own,
+               const TangentInput<Real>& in, Real* const (&ahead)[kAffineComponents]);
   bool stress_of(std::size_t set, const TangentInput<Real>& in, Real* const (&matrix)[kAffineComponents]) const;
 
   const ImplicitPlan<Real>& plan_;
+  /// In the order of YieldInput.
+  static constexpr std::array kYieldHandles{kCone.kInfo,    kCohesion.kInfo, kDilatancy.kInfo,
+                                            kPlastic.kInfo, kSheared.kInfo,  kDilated.kInfo};
+
   bool returns_;  // whether sand yields within the solve
   bool resolves_ = false, fades_ = false;
-  BlockSweep<Real>& sweep_;
+  ParticleSweep<Real>& sweep_;
   TangentSystem<Real>& system_;
   bool modelled_ = false;
-  AlignedArray<Real> at_begin_, at_trial_, model_;  // per particle: grad v^n, Trial, Model
+  std::array<std::size_t, kYieldHandles.size()> yield_;  // in scratch
+  AlignedArray<Real> at_begin_, at_trial_, model_;       // per particle: grad v^n, Trial, Model
 };
 
 }  // namespace repose

@@ -27,18 +27,18 @@ void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
     contacts_.add_friction(b, x.block(b), y.block(b));
   });
   const double square_dt = static_cast<double>(sweep_.dt()) * static_cast<double>(sweep_.dt());
-  sweep_.over_particles({.from = &x, .to = &y, .adds = true}, [&](std::size_t set, Chunk<Real>& chunk,
-                                                                  ImplicitScratch<Real>& own) {
-    Real *gradient[kAffineComponents], *matrix[kAffineComponents];
-    for (std::size_t k = 0; k < kAffineComponents; ++k) {
-      gradient[k] = chunk.scratch.gradient.data() + k * kChunk;
-      matrix[k] = own.matrix.data() + k * kChunk;
-    }
-    const Real* const tangents = tangent(set, chunk);
-    sweep_.gather_gradient(chunk, chunk.scratch.arena.data(), gradient, {tangents, kTangentValues});
-    sweep_.kernels().apply_tangent(tangents, gradient, matrix, chunk.particles.count);
-    sweep_.push(chunk, own, -square_dt * chunk.set.particle_volume);
-  });
+  sweep_.over_particles({.from = &x, .to = &y, .adds = true},
+                        [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
+                          Real *gradient[kAffineComponents], *matrix[kAffineComponents];
+                          for (std::size_t k = 0; k < kAffineComponents; ++k) {
+                            gradient[k] = own.gradient + k * kChunk;
+                            matrix[k] = own.matrix + k * kChunk;
+                          }
+                          const Real* const tangents = tangent(set, chunk);
+                          sweep_.gather_gradient(chunk, own.arena, gradient, {tangents, kTangentValues});
+                          sweep_.kernels().apply_tangent(tangents, gradient, matrix, chunk.particles.count);
+                          sweep_.push(chunk, own, -square_dt * chunk.set.particle_volume);
+                        });
 }
 
 namespace {
@@ -70,7 +70,7 @@ void TangentSystem<Real>::prepare() {
   if (preconditioner_ != Preconditioner::kBlocks) return;
   const double square_dt = static_cast<double>(sweep_.dt()) * static_cast<double>(sweep_.dt());
   sweep_.over_particles({.to = &diagonal_, .second = &side_}, [&](std::size_t set, Chunk<Real>& chunk,
-                                                                  ImplicitScratch<Real>& own) {
+                                                                  const ImplicitScratch<Real>& own) {
     sweep_.add_stiffness(chunk, own, tangent(set, chunk), square_dt * chunk.set.particle_volume);
   });
   sweep_.for_each_block([&](std::size_t b) {

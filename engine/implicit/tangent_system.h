@@ -6,8 +6,8 @@
 // empty.
 #pragma once
 
-#include "engine/implicit/block_sweep.h"
 #include "engine/implicit/contact_set.h"
+#include "engine/implicit/particle_sweep.h"
 
 namespace repose {
 
@@ -17,7 +17,7 @@ class TangentSystem {
   using Real = Real_;
   using Vector = NodeField<Real>;
 
-  TangentSystem(BlockSweep<Real>& sweep, const ContactSet<Real>& contacts, Preconditioner preconditioner)
+  TangentSystem(ParticleSweep<Real>& sweep, const ContactSet<Real>& contacts, Preconditioner preconditioner)
       : sweep_(sweep), contacts_(contacts), preconditioner_(preconditioner) {}
 
   /// After each order event.
@@ -59,12 +59,13 @@ class TangentSystem {
     return sweep_.sums_of_blocks([&](std::size_t block) { return body(Part(*this, block)); });
   }
 
-  std::size_t bytes() const { return tangents_.bytes() + diagonal_.bytes() + side_.bytes(); }
+  std::size_t particle_bytes() const { return tangents_.bytes(); }
+  std::size_t block_bytes() const { return diagonal_.bytes() + side_.bytes(); }
 
  private:
   void times_inverse_blocks(std::size_t block, Real* z) const;
 
-  BlockSweep<Real>& sweep_;
+  ParticleSweep<Real>& sweep_;
   const ContactSet<Real>& contacts_;
   Preconditioner preconditioner_;
   AlignedArray<Real> tangents_;

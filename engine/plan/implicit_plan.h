@@ -1,8 +1,6 @@
-// Repose: what a plan says of implicit steps: how sand answers within them, what holds nodes, and when a
-// solution is good enough.
+// Repose: what a plan says of implicit steps: how sand answers within them, and when a solution is good enough.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -44,43 +42,19 @@ inline bool symmetric(const ImplicitSettings& settings) {
   return settings.mode != TangentMode::kExact;
 }
 
-/// What keeps one node from moving freely.
+/// A material ready for the kernels: its table and its constants.
 template <class Real>
-struct Hold {
-  enum class Kind {
-    kAll,      ///< v = velocity
-    kAlong,    ///< v . normal = bound
-    kAgainst,  ///< v . normal >= bound
-  };
-  int node = 0;  ///< of its block
-  Kind kind = Kind::kAll;
-  Real normal[3] = {};
-  Real bound = 0;         ///< m/s
-  Real velocity[3] = {};  ///< m/s
-  Real friction = 0;      ///< Coulomb's coefficient; none of kAll
-
-  /// The same of the difference to a velocity.
-  void relative_to(const Real* v) {
-    for (int axis = 0; axis < 3; ++axis) {
-      velocity[axis] -= v[axis];
-      bound -= normal[axis] * v[axis];
-    }
-  }
-};
-
-/// Lists what may hold the nodes of a block in this step, whether or not it does yet.
-template <class Real>
-struct HoldPass {
-  PassDescription description;
-  std::function<void(const NodeBlock<Real>&, std::vector<Hold<Real>>&)> run;
+struct MaterialRuntime {
+  MaterialKernels<Real> kernels;
+  std::shared_ptr<const void> constants;  ///< the material's Constants<Real>
+  Real cone = 0;                          ///< of a material that yields: bc
 };
 
 /// How a set answers: its material's kernels, and the passes between trial strain and return map, which change
-/// that strain and put the numbers by which particles yield into Scratch::yield.
+/// that strain and find the numbers by which particles yield.
 template <class Real>
 struct SetResponse {
-  MaterialKernels<Real> kernels;
-  std::shared_ptr<const void> constants;
+  MaterialRuntime<Real> material;
   UnilateralConstants<Real> unilateral{};
   bool shaped = false;  ///< whether particles yield by numbers of their own
   std::vector<ParticlePass<Real>> before_return{};
@@ -90,6 +64,7 @@ template <class Real>
 struct ImplicitPlan {
   ImplicitSettings settings;
   std::vector<SetResponse<Real>> sets;
+  PassDescription description{};  ///< of the solve as a whole
 };
 
 }  // namespace repose

@@ -1,10 +1,12 @@
 // Repose: the step as data. The scene compiler lists the passes that a scene calls for; the plan checks that
-// each reads only what an earlier one, or the initial state, provides; `repose plan` prints it. Passes of one
-// list run one after the other over a span of a block's particles, or over a block's nodes, while they are in
-// cache.
+// each reads only what an earlier one, or the initial state, provides, and knows how much scratch they need;
+// `repose plan` prints it. Passes of one list run one after the other over a span of a block's particles, or
+// over a block's nodes, while they are in cache.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +14,7 @@
 #include "engine/base/result.h"
 #include "engine/plan/implicit_plan.h"
 #include "engine/plan/pass.h"
-#include "engine/plan/rest.h"
+#include "engine/plan/sleep.h"
 #include "engine/state/ownership.h"
 
 namespace repose {
@@ -54,6 +56,19 @@ struct TransferChoice {
   }
 };
 
+/// How much memory a simulation may take, bytes; and what of it writing a frame takes, beside what lasts: the
+/// points, then one after the other what files of points and of volumes are made from.
+struct MemoryBound {
+  double limit = std::numeric_limits<double>::infinity();
+  double per_point = 0.0, per_point_in_file = 0.0, volumes_per_block = 0.0;
+
+  double writing(std::size_t particles, std::size_t blocks) const {
+    const auto points = static_cast<double>(particles);
+    return per_point * points +
+           std::max(per_point_in_file * points, volumes_per_block * static_cast<double>(blocks));
+  }
+};
+
 template <class Real>
 struct StepPlan {
   const Kernels<Real>* kernels = nullptr;
@@ -61,6 +76,10 @@ struct StepPlan {
   StepLimits limits;
   Real least_mass = 0;  ///< kg; a node below it is empty
   Advection advection = Advection::kAfterFriction;
+
+  ScratchLayout scratch;  ///< of what passes hand on within a chunk
+  Tables tables;          ///< of what follows the topology
+  MemoryBound memory;
 
   std::vector<EventPass<Real>> events;
   std::vector<OrderPass<Real>> order;
@@ -72,11 +91,12 @@ struct StepPlan {
 
   std::vector<MeasurePass<Real>> measures;
 
-  /// Between forces and holds, where steps are implicit; and what may hold nodes meanwhile.
+  /// Where steps are implicit: between forces and the gather, instead of `holds`, nodes are solved for within
+  /// their constraints.
   std::optional<ImplicitPlan<Real>> implicit;
-  std::vector<HoldPass<Real>> contacts;
+  std::vector<ConstraintPass<Real>> constraints;
 
-  std::optional<RestRule> rest;                 ///< whether, and when, blocks sleep
+  std::optional<SleepRule> sleep;               ///< whether, and when, blocks sleep
   std::vector<Disturbance<Real>> disturbances;  ///< what wakes them from outside
 
   /// How fast, in m/s, what is no particle moves at most between two times (s): it must not cross more cells in
@@ -95,7 +115,8 @@ struct StepPlan {
     each("each step", -1, plan.prepare);
     for (std::size_t k = 0; k < plan.scatter.size(); ++k) each("scatter", static_cast<int>(k), plan.scatter[k]);
     each("nodes", -1, plan.nodes);
-    each("solve", -1, plan.contacts);
+    each("solve", -1, plan.constraints);
+    if (plan.implicit) visit("solve", -1, plan.implicit->description);
     each("nodes", -1, plan.holds);
     for (std::size_t k = 0; k < plan.gather.size(); ++k) each("gather", static_cast<int>(k), plan.gather[k]);
     each("measure", -1, plan.measures);
@@ -116,9 +137,20 @@ struct StepPlan {
     }
   }
 
-  /// Refuses a plan in which a pass reads what nothing before it provides, naming pass and quantity. `state`
-  /// holds the sets, whose channels are there from the start.
-  Result<void> validate(const State<Real>& state) const;
+  PassMaker<Real> passes() { return {scratch, tables}; }
+  /// Passes of set k, before and after the nodes.
+  SetPasses<Real> scatter_of(const State<Real>& state, std::size_t k) {
+    return {PassMaker<Real>(scratch, tables, &state.sets[k]), scatter[k]};
+  }
+  SetPasses<Real> gather_of(const State<Real>& state, std::size_t k) {
+    return {PassMaker<Real>(scratch, tables, &state.sets[k]), gather[k]};
+  }
+
+  /// What is wrong with the plan, empty where nothing is: a pass reads what nothing before it provides, or a
+  /// step leaves out what the next begins with; with the names of pass and handle. A plan that a scene brings
+  /// about is never wrong: whoever compiled it was. `state` holds the sets, whose channels are there from the
+  /// start.
+  std::string fault(const State<Real>& state) const;
 };
 
 }  // namespace repose

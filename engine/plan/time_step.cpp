@@ -1,12 +1,14 @@
 #include "engine/plan/time_step.h"
 
+#include <array>
 #include <cmath>
 
 namespace repose {
 
 const char* limit_name(Limit limit) {
-  constexpr const char* kNames[] = {"max_step", "velocity", "sound", "isolated", "strain", "frame"};
-  return kNames[static_cast<int>(limit)];
+  constexpr std::array<const char*, kLimits> kNames{"max_step", "velocity", "sound",
+                                                    "isolated", "strain",   "frame"};
+  return kNames[static_cast<std::size_t>(limit)];
 }
 
 namespace {

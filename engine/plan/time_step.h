@@ -19,6 +19,7 @@
 namespace repose {
 
 enum class Limit { kMaxStep, kVelocity, kSound, kIsolated, kStrain, kFrame };
+inline constexpr std::size_t kLimits = 6;
 const char* limit_name(Limit limit);
 
 struct StepSize {

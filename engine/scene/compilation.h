@@ -45,15 +45,20 @@ struct Compilation {
 template <class Real>
 Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state);
 
+inline StepLimits step_limits(const Scene& scene) {
+  const TimeDescription& time = scene.time;
+  return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, {}};
+}
+
 /// What bounds steps of a set of a material.
 inline StepLimits::Stiffness stiffness_of(const Elasticity& e) {
   return {e.sound_speed(), std::sqrt((3.0 * e.lambda() + 2.0 * e.mu()) / e.density)};
 }
 
-/// What the scene asks for, or the cheaper kind of step where that is `auto`. `plan` is of either kind: it
-/// knows what moves. Its order passes are run, for solids know how far they reach only then.
+/// What the scene asks for, or the cheaper kind of step where that is `auto`. `explicit_only`: a key that goes
+/// with explicit steps only, or null.
 template <class Real>
-IntegratorChoice choose_integrator(const Compilation<Real>& compilation, State<Real>& state,
-                                   const std::vector<Solid>& solids, const StepPlan<Real>& plan);
+IntegratorChoice choose_integrator(const Compilation<Real>& compilation, const State<Real>& state,
+                                   const std::vector<Solid>& solids, const char* explicit_only);
 
 }  // namespace repose

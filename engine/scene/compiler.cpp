@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/plan/transfer_stages.h"
+#include "engine/plan/contact_log.h"
+#include "engine/plan/transfer_passes.h"
 #include "engine/scene/compilation.h"
 
 namespace repose {
@@ -24,6 +25,7 @@ Topology make_topology(const Scene& scene) {
   return topology;
 }
 
+/// A material ready for the kernels; once for each set.
 template <class Real>
 MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const MaterialDescription& material) {
   MaterialRuntime<Real> runtime{kernels.material[material.law()], nullptr, Real(0)};
@@ -78,118 +80,193 @@ Surroundings surroundings_of(const Scene& scene, const CompileOptions& options) 
   return around;
 }
 
-StepLimits step_limits(const Scene& scene) {
-  const TimeDescription& time = scene.time;
-  return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, {}};
-}
-
-/// Notes whose the passes are that have been added since the last time.
+/// Lists the passes of a scene. compile() is the step's table of contents.
 template <class Real>
-void sign(StepPlan<Real>& plan, const char* name) {
-  StepPlan<Real>::for_each_pass(plan, [name](const char*, int, PassDescription& pass) {
-    if (!pass.reason.empty() && pass.effect.empty()) pass.effect = name;
-  });
-}
+class PlanCompiler {
+ public:
+  PlanCompiler(const Compilation<Real>& compilation, const State<Real>& state, const std::vector<Solid>& solids,
+               bool implicit);
 
-template <class Real>
-StepPlan<Real> compile_plan(const Compilation<Real>& compilation, const State<Real>& state,
-                            const std::vector<Solid>& solids, bool implicit) {
-  const Scene& scene = compilation.scene;
-  const CompileOptions& options = compilation.options;
-  StepPlan<Real> plan;
-  plan.kernels = &kernels<Real>(options.target);
-  plan.transfer = transfer_choice(scene);
-  plan.limits = step_limits(scene);
-  plan.advection = scene.grid.advection;
-  if (implicit) plan.implicit.emplace(ImplicitPlan<Real>{scene.implicit, {}});
-  const Lattice<Real> lattice = make_lattice(state, plan.transfer);
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const auto& set : state.sets) {
-    lightest = std::min(lightest, set.particle_mass);
-    if (implicit) continue;  // no wave and no pulse bounds a step that is solved for
-    plan.limits.sets.push_back(stiffness_of(material_of(scene, set.material).elasticity()));
+  StepPlan<Real> compile() {
+    tell_nodes();      // stress, and what particles tell: mass, momentum, the impulse of stress
+    update_nodes();    // v* = p/m, forces, what holds nodes: v* -> v-bar -> v-tilde
+    move_particles();  // gather, advance, trial strain, return map
+    return std::move(plan_);
   }
-  // A lighter node would lose no momentum that its neighbours' sums could still hold.
-  plan.least_mass = static_cast<Real>(1e-12 * lightest);
 
-  Assembly<Real> assembly{plan, state, solids, compilation.sets, compilation.surroundings, {}};
-  assembly.initialize = [effects = std::make_shared<const Effects>(compilation.effects)](
-                            Newcomers<Real>& newcomers) { initialize(*effects, newcomers); };
-  // Has each effect that is on add its passes, and signs them.
-  const auto ask = [&](auto hook) {
-    return [&plan, hook](const auto& effect) {
+ private:
+  void tell_nodes();
+  void update_nodes();
+  void move_particles();
+  void gather_set(std::size_t k);
+  void return_to_yield_surface(std::size_t k, SetPasses<Real>& passes);
+  bool shaped(std::size_t k) const;
+  bool rubs() const;
+  void describe_solve();
+
+  /// Has each effect that is on add its passes, and notes whose they are.
+  template <class Hook>
+  auto ask(Hook hook) {
+    return [this, hook](const auto& effect) {
       if (!effect.on()) return;
       hook(effect);
-      sign(plan, effect.kName);
+      sign(effect.kName);
     };
-  };
-
-  // Particles to nodes.
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    const MaterialRuntime<Real> material =
-        make_material(*plan.kernels, material_of(scene, state.sets[k].material));
-    plan.scatter.emplace_back();
-    if (!implicit) plan.scatter[k].push_back(stress_pass(material));  // tau of the strain
-    for_each_effect(compilation.effects,
-                    ask([&](const auto& effect) { effect.add_before_scatter(assembly, k); }));
-    plan.scatter[k].push_back(scatter_pass(plan, lattice));  // mass, momentum, and the impulse of tau
   }
-
-  // Nodes.
-  plan.nodes.push_back(normalize_pass(plan));  // v* = p/m
-  if (plan.transfer.figures().keeps_velocity) {
-    plan.order.push_back(before_forces_room_pass<Real>());
-    plan.nodes.push_back(before_forces_pass(plan));
-    sign(plan, "transfer");
-  } else if (implicit) {
-    plan.order.push_back(before_forces_room_pass<Real>());
-    plan.nodes.push_back(begin_pass<Real>());
-    sign(plan, "integrator");
-  }
-  for_each_effect(compilation.effects,
-                  ask([&](const auto& effect) {  // forces, then solids: v* -> v-bar -> v-tilde
-                    effect.add_to_nodes(assembly);
-                    assembly.first_inlet += effect.inlets().size();
-                    assembly.first_outlet += effect.outlets().size();
-                  }));
-
-  // Nodes to particles.
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    const MaterialDescription& description = material_of(scene, state.sets[k].material);
-    const MaterialRuntime<Real> material = make_material(*plan.kernels, description);
-    plan.gather.emplace_back();
-    auto& passes = plan.gather[k];
-    passes.push_back(gather_pass(plan, lattice));  // v and C, and the velocity that moves
-    for_each_effect(compilation.effects,
-                    ask([&](const auto& effect) { effect.add_before_motion(assembly, k); }));
-    passes.push_back(advance_pass(plan));  // x += dt v
-    for_each_effect(compilation.effects,
-                    ask([&](const auto& effect) { effect.add_after_motion(assembly, k); }));
-    passes.push_back(trial_pass(material));  // strain of the step
-    if (implicit) {
-      plan.implicit->sets.push_back(
-          {material.kernels, material.constants, unilateral_of<Real>(scene, description.elasticity())});
-    }
-    if (!description.yields()) continue;
-    const std::size_t before_return = passes.size();
-    bool shaped = false;
-    for_each_effect(compilation.effects, [&](const auto& effect) {
-      shaped = shaped || (effect.on() && effect.shapes_yield(compilation.sets[k]));
+  /// Notes whose the passes are that have been added since the last time.
+  void sign(const char* name) {
+    StepPlan<Real>::for_each_pass(plan_, [name](const char*, int, PassDescription& pass) {
+      if (!pass.reason.empty() && pass.effect.empty()) pass.effect = name;
     });
-    if (shaped)
-      passes.push_back(yield_surface_pass(material));  // numbers of the material, for effects to change
-    for_each_effect(compilation.effects,
-                    ask([&](const auto& effect) { effect.add_before_return(assembly, k); }));
-    if (implicit) {
-      plan.implicit->sets.back().shaped = shaped;
-      plan.implicit->sets.back().before_return.assign(
-          passes.begin() + static_cast<std::ptrdiff_t>(before_return), passes.end());
-    }
-    passes.push_back(shaped ? project_shaped_pass(material) : project_pass(material));  // to the yield surface
-    for_each_effect_reversed(compilation.effects,
-                             ask([&](const auto& effect) { effect.add_after_return(assembly, k); }));
   }
-  return plan;
+  const MaterialDescription& description(std::size_t k) const {
+    return material_of(compilation_.scene, state_.sets[k].material);
+  }
+
+  const Compilation<Real>& compilation_;
+  const State<Real>& state_;
+  StepPlan<Real> plan_;
+  Lattice<Real> lattice_;
+  std::vector<MaterialRuntime<Real>> materials_;  // per set
+  Assembly<Real> assembly_;
+};
+
+template <class Real>
+PlanCompiler<Real>::PlanCompiler(const Compilation<Real>& compilation, const State<Real>& state,
+                                 const std::vector<Solid>& solids, bool implicit)
+    : compilation_(compilation),
+      state_(state),
+      assembly_{plan_, state, solids, compilation.sets, compilation.surroundings, {}} {
+  const Scene& scene = compilation.scene;
+  plan_.kernels = &kernels<Real>(compilation.options.target);
+  plan_.transfer = transfer_choice(scene);
+  plan_.limits = step_limits(scene);
+  plan_.advection = scene.grid.advection;
+  if (plan_.advection == Advection::kAfterFriction) plan_.scratch.share_arena(kArenaAfterFriction, kArena);
+  if (implicit) plan_.implicit.emplace(ImplicitPlan<Real>{scene.implicit, {}});
+  lattice_ = make_lattice(state, plan_.transfer);
+  double lightest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    lightest = std::min(lightest, state.sets[k].particle_mass);
+    materials_.push_back(make_material(*plan_.kernels, description(k)));
+    // No wave and no pulse bounds a step that is solved for.
+    if (!implicit) plan_.limits.sets.push_back(stiffness_of(description(k).elasticity()));
+  }
+  // A lighter node would lose no momentum that its neighbours' sums could still hold.
+  plan_.least_mass = static_cast<Real>(1e-12 * lightest);
+  assembly_.initialize = [effects = std::make_shared<const Effects>(compilation.effects)](
+                             Newcomers<Real>& newcomers) { initialize(*effects, newcomers); };
+}
+
+template <class Real>
+void PlanCompiler<Real>::tell_nodes() {
+  plan_.scatter.resize(state_.sets.size());
+  for (std::size_t k = 0; k < state_.sets.size(); ++k) {
+    if (!plan_.implicit) add_stress(materials_[k], plan_.scatter_of(state_, k));  // tau of the strain
+    for_each_effect(compilation_.effects,
+                    ask([&](const auto& effect) { effect.add_before_scatter(assembly_, k); }));
+    add_scatter(plan_, lattice_, plan_.scatter_of(state_, k));
+  }
+}
+
+template <class Real>
+void PlanCompiler<Real>::update_nodes() {
+  add_normalize(plan_);  // v* = p/m
+  if (plan_.transfer.figures().keeps_velocity || plan_.implicit) {
+    add_velocity_before_forces(plan_);
+    sign(plan_.transfer.figures().keeps_velocity ? "transfer" : "integrator");
+  }
+  for_each_effect(compilation_.effects, ask([&](const auto& effect) {  // forces, then what holds nodes
+                    effect.add_to_nodes(assembly_);
+                    assembly_.first_inlet += effect.inlets().size();
+                    assembly_.first_outlet += effect.outlets().size();
+                  }));
+  if (plan_.implicit) describe_solve();
+}
+
+template <class Real>
+void PlanCompiler<Real>::describe_solve() {
+  const auto tilde = when(!plan_.constraints.empty() && plan_.advection == Advection::kBeforeFriction, kVTilde);
+  const auto log = when(plan_.tables.find(kContactLog.kInfo) != nullptr, kContactLog);
+  plan_.implicit->description = PassMaker<Real>::describe(
+      {"balance of momentum", "time.integrator"},
+      reads(kPosition, kHenckyStrain, kNodeVelocity, kVelocityBeforeForces), writes(kNodeVelocity, tilde, log));
+  sign("integrator");
+}
+
+template <class Real>
+void PlanCompiler<Real>::move_particles() {
+  plan_.gather.resize(state_.sets.size());
+  for (std::size_t k = 0; k < state_.sets.size(); ++k) gather_set(k);
+}
+
+template <class Real>
+void PlanCompiler<Real>::gather_set(std::size_t k) {
+  SetPasses<Real> passes = plan_.gather_of(state_, k);
+  add_gather(plan_, lattice_, rubs(), passes);  // v and C, and the velocity that moves
+  for_each_effect(compilation_.effects,
+                  ask([&](const auto& effect) { effect.add_before_motion(assembly_, k); }));
+  add_advance(plan_, passes);  // x += dt v
+  for_each_effect(compilation_.effects,
+                  ask([&](const auto& effect) { effect.add_after_motion(assembly_, k); }));
+  const bool yields = description(k).yields();
+  add_trial(materials_[k], yields, passes);  // strain of the step
+  if (plan_.implicit) {
+    plan_.implicit->sets.push_back(
+        {materials_[k], unilateral_of<Real>(compilation_.scene, description(k).elasticity())});
+  }
+  if (yields) return_to_yield_surface(k, passes);
+}
+
+template <class Real>
+void PlanCompiler<Real>::return_to_yield_surface(std::size_t k, SetPasses<Real>& passes) {
+  const std::vector<ParticlePass<Real>>& list = plan_.gather[k];
+  const auto before_return = static_cast<std::ptrdiff_t>(list.size());
+  const bool by_numbers = shaped(k);
+  if (by_numbers) add_yield_surface(materials_[k], passes);  // numbers of the material, for effects to change
+  for_each_effect(compilation_.effects,
+                  ask([&](const auto& effect) { effect.add_before_return(assembly_, k); }));
+  if (plan_.implicit) {
+    plan_.implicit->sets.back().shaped = by_numbers;
+    plan_.implicit->sets.back().before_return.assign(list.begin() + before_return, list.end());
+  }
+  if (by_numbers) {
+    add_shaped_return_map(materials_[k], passes);
+  } else {
+    add_return_map(materials_[k], passes);
+  }
+  for_each_effect_reversed(compilation_.effects,
+                           ask([&](const auto& effect) { effect.add_after_return(assembly_, k); }));
+}
+
+/// Whether particles of a set yield by numbers of their own.
+template <class Real>
+bool PlanCompiler<Real>::shaped(std::size_t k) const {
+  bool any = false;
+  for_each_effect(compilation_.effects, [&](const auto& effect) {
+    any = any || (effect.on() && effect.shapes_yield(compilation_.sets[k]));
+  });
+  return any;
+}
+
+/// Whether there is a v-tilde.
+template <class Real>
+bool PlanCompiler<Real>::rubs() const {
+  const auto writes = [](const PassDescription& pass) {
+    return std::find(pass.writes.begin(), pass.writes.end(), kVTilde.kInfo) != pass.writes.end();
+  };
+  return (plan_.implicit && writes(plan_.implicit->description)) ||
+         std::any_of(plan_.holds.begin(), plan_.holds.end(),
+                     [&](const NodePass<Real>& pass) { return writes(pass.description); });
+}
+
+/// The key of an effect that is on and that implicit steps cannot have, or null.
+const char* explicit_only(const Effects& effects) {
+  const char* key = nullptr;
+  for_each_effect(effects, [&key](const auto& effect) {
+    if (effect.on() && key == nullptr) key = effect.explicit_only();
+  });
+  return key;
 }
 
 }  // namespace
@@ -238,17 +315,19 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   for (const Solid& solid : compiled.solids) compilation.surroundings.solids.push_back(solid.name);
   if (auto ready = prepare(compilation.effects, compilation.surroundings); !ready) return ready.error();
   if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
-  const bool asked = scene.time.integrator == Integrator::kImplicit;
-  compiled.plan = compile_plan(compilation, state, compiled.solids, asked);
-  compiled.integrator = choose_integrator(compilation, state, compiled.solids, compiled.plan);
-  if (compiled.integrator.implicit && !asked)
-    compiled.plan = compile_plan(compilation, state, compiled.solids, true);
-  state.rest.on = compiled.plan.rest.has_value();
-  state.last_motion.on = compiled.plan.implicit.has_value();
-  if (state.rest.on && state.last_motion.on)
+  const char* const only = explicit_only(compilation.effects);
+  compiled.integrator = choose_integrator(compilation, state, compiled.solids, only);
+  if (compiled.integrator.implicit && only != nullptr) {
     return Error{ErrorKind::kBadScene, "is for explicit steps; leave it out, or time.integrator at explicit",
-                 scene.where("sleep")};
-  if (auto valid = compiled.plan.validate(state); !valid) return valid.error();
+                 scene.where(only)};
+  }
+  compiled.plan =
+      PlanCompiler<Real>(compilation, state, compiled.solids, compiled.integrator.implicit).compile();
+  state.rest.on = compiled.plan.sleep.has_value();
+  state.last_motion.on = compiled.plan.implicit.has_value();
+  if (const std::string fault = compiled.plan.fault(state); !fault.empty())
+    return Error{ErrorKind::kInternal, "internal error: " + fault + "; please report it, with the scene",
+                 scene.name};
   state.tallies.assign(compiled.plan.tallies(), 0.0);
   return compiled;
 }

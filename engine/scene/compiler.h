@@ -1,8 +1,9 @@
 // Repose: from a scene to something that runs: the initial state, and the step as a list of passes. The body of
-// compile_plan is the step's table of contents: one commented line for each thing that a scene can call for,
-// and nothing else decides the order.
+// PlanCompiler::compile is the step's table of contents: the phases of a step in their order, each with a
+// function that lists its passes, and nothing else decides the order.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,7 +21,7 @@ namespace repose {
 struct CompileOptions {
   Target target = best_target();
   bool allow_outside_paths = false;
-  double memory_limit = 0.0;  ///< bytes; 0: 85 % of the machine's memory
+  double memory_limit = std::numeric_limits<double>::infinity();  ///< bytes
   /// Of implicit steps, by which time.integrator `auto` is decided; none: the committed ones.
   std::span<const ImplicitCost> implicit_costs = {};
 };
@@ -34,7 +35,8 @@ struct CompiledScene {
 };
 
 /// Builds shapes, seeds bodies, lists the passes. Errors: 65 geometry that is wrong or holds no particle, 66 a
-/// missing mesh, 78 a scene that will not fit in memory, with the spacing that would.
+/// missing mesh, 71 a plan that no scene should bring about, 78 a scene that will not fit in memory, with the
+/// spacing that would.
 template <class Real>
 Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options);
 

@@ -24,6 +24,13 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
   return list;
 }
 
+std::size_t channels_per_particle(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  std::size_t bytes = 0;
+  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
+  return bytes / real;
+}
+
 double step_cost(const Scene& scene) {
   return cost_of("step") + effects_cost(scene);
 }

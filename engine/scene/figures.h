@@ -18,6 +18,9 @@ struct EffectStatus {
 };
 std::vector<EffectStatus> effect_status(const Scene& scene);
 
+/// Channels of the set that has most.
+std::size_t channels_per_particle(const Scene& scene);
+
 /// ns per particle and step, about: an explicit step with the scene's effects, and the effects alone.
 double step_cost(const Scene& scene);
 double effects_cost(const Scene& scene);
@@ -26,6 +29,9 @@ double effects_cost(const Scene& scene);
 double last_frame_time(const Scene& scene);
 /// How many particles inlets will have made by a time (s).
 double emitted_by(const Scene& scene, double time);
+
+/// Numbers per particle that an implicit solve keeps: a tangent, gradients, trial states, linear models.
+inline constexpr std::size_t kSolverNumbers = 75;
 
 /// Bytes per particle of all channels and of what ordering keeps beside them.
 std::size_t bytes_per_particle(const Scene& scene);

@@ -1,10 +1,9 @@
 // Repose: the state that a scene begins with: bodies filled with particles, after it is known that they fit.
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "engine/base/memory.h"
 #include "engine/geometry/seeding.h"
 #include "engine/scene/compilation.h"
 #include "engine/state/block_order.h"
@@ -39,28 +38,13 @@ void fill_set(const Scene& scene, const BodyDescription& body, const Vec3& cente
   }
 }
 
-double physical_memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
-/// "3.2 MB".
-std::string bytes_text(double bytes) {
-  const char* unit = "B";
-  for (const char* larger : {"kB", "MB", "GB", "TB"}) {
-    if (bytes < 1000.0) break;
-    bytes /= 1000.0;
-    unit = larger;
-  }
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %s", bytes, unit);
-  return text;
-}
-
 /// Refuses, before anything is allocated, bodies that would not fit, or what inlets will have made by the
 /// scene's last frame. Outlets make room, nobody knows how much: where there are some, particles of inlets
 /// count only as ids.
 Result<void> check_memory(const Scene& scene, double seeded, double limit) {
-  const auto per_particle = static_cast<double>(bytes_per_particle(scene));
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  const std::size_t solver = scene.time.integrator == Integrator::kImplicit ? kSolverNumbers * real : 0;
+  const auto per_particle = static_cast<double>(bytes_per_particle(scene) + solver);
   const double emitted = emitted_by(scene, last_frame_time(scene)), particles = seeded + emitted;
   const double held = seeded + (outlets(scene).empty() ? emitted : 0.0);
   // Seeds take 24 bytes while they last; sets that grow take an eighth more than they need.
@@ -126,11 +110,13 @@ void set_initial_speed(State<Real>& state) {
 
 }  // namespace
 
-template <class Real>
-Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
-  const Scene& scene = compilation.scene;
-  const CompileOptions& options = compilation.options;
-  std::vector<std::shared_ptr<const Shape>> shapes;
+namespace {
+
+using Shapes = std::vector<std::shared_ptr<const Shape>>;
+
+/// The shapes of the bodies, once it is known that their particles fit into memory.
+Result<Shapes> make_shapes(const Scene& scene, const CompileOptions& options) {
+  Shapes shapes;
   double particles = 0.0;
   for (const BodyDescription& body : scene.bodies) {
     auto shape = make_shape(body.shape, scene.folder, scene.grid.spacing, options.allow_outside_paths);
@@ -140,40 +126,55 @@ Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
     if (!scene.grid.plane_strain) particles += cells * static_cast<double>(body.particles_per_cell);
     shapes.push_back(*shape);
   }
-  const double limit = options.memory_limit > 0.0 ? options.memory_limit : 0.85 * physical_memory();
-  if (std::isfinite(particles)) {  // seeding refuses the infinite ones
-    if (auto fits = check_memory(scene, particles, limit); !fits) return fits.error();
-  }
+  if (!std::isfinite(particles)) return shapes;  // seeding refuses the infinite ones
+  if (auto fits = check_memory(scene, particles, options.memory_limit); !fits) return fits.error();
+  return shapes;
+}
+
+/// Lets effects fill the channels of a body's particles, whose cells of the lattice are `cells`.
+template <class Real>
+void initialize_body(const Compilation<Real>& compilation, const std::vector<Index3>& cells,
+                     ParticleSet<Real>& set) {
+  const Scene& scene = compilation.scene;
+  Newcomers<Real> newcomers{
+      set,
+      0,
+      set.count,
+      compilation.sets.back(),
+      compilation.surroundings,
+      [&](std::size_t p) {
+        Vec3 x;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const auto cell = static_cast<double>(cells[p][axis] - scene.grid.origin_cells[axis]);
+          x[static_cast<int>(axis)] = (cell + double(set.position[axis][p])) * scene.grid.spacing;
+        }
+        return x;
+      },
+      [](std::size_t) { return 0.0; }};
+  initialize(compilation.effects, newcomers);
+}
+
+}  // namespace
+
+template <class Real>
+Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
+  const Scene& scene = compilation.scene;
+  const auto shapes = make_shapes(scene, compilation.options);
+  if (!shapes) return shapes.error();
   std::vector<std::vector<Index3>> cells;
   std::uint32_t next_id = 0;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const BodyDescription& body = scene.bodies[k];
-    SeedOptions seeding{scene.grid.spacing, body.particles_per_cell, body.sampling,
-                        static_cast<std::uint64_t>(body.seed), scene.grid.plane_strain};
-    auto seeds = seed_shape(*shapes[k], seeding);
+    const Shape& shape = *(*shapes)[k];
+    const SeedOptions seeding{scene.grid.spacing, body.particles_per_cell, body.sampling,
+                              static_cast<std::uint64_t>(body.seed), scene.grid.plane_strain};
+    auto seeds = seed_shape(shape, seeding);
     if (!seeds) return Error{seeds.error().kind, seeds.error().text(), scene.where("bodies." + body.name)};
-    const Bounds bounds = shapes[k]->bounds();
+    const Bounds bounds = shape.bounds();
     ParticleSet<Real> set = empty_set(compilation, body.name, body.material);
-    const SetDescription& description = compilation.sets.back();
     fill_set(scene, body, 0.5 * (bounds.lower + bounds.upper), std::move(*seeds), next_id, set,
              cells.emplace_back());
-    const auto& at = cells.back();  // in cells of the lattice
-    Newcomers<Real> newcomers{
-        set,
-        0,
-        set.count,
-        description,
-        compilation.surroundings,
-        [&](std::size_t p) {
-          Vec3 x;
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto cell = static_cast<double>(at[p][axis] - scene.grid.origin_cells[axis]);
-            x[static_cast<int>(axis)] = (cell + double(set.position[axis][p])) * scene.grid.spacing;
-          }
-          return x;
-        },
-        [](std::size_t) { return 0.0; }};
-    initialize(compilation.effects, newcomers);
+    initialize_body(compilation, cells.back(), set);
     next_id += static_cast<std::uint32_t>(set.count);
     // Spin strains whether or not particles store C; its matrix has the norm sqrt(2) |w|.
     const double spin = std::sqrt(2.0) * body.angular_velocity.norm();

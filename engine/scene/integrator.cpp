@@ -11,9 +11,6 @@
 namespace repose {
 namespace {
 
-/// Motions are asked for all times, whatever the last frame.
-constexpr double kForEver = 1e9;  // s
-
 /// How far below a point a solid lies along `down`, m; 0 where it lies elsewhere. Distances never exceed the
 /// true ones, so no step of the way passes through it.
 double way_down_to(const Solid& solid, const Vec3& x, const Vec3& down, double near) {
@@ -75,8 +72,9 @@ double height_of_fall(const Bounds& box, const std::vector<Solid>& solids, const
 
 /// The largest speed that something may come to, m/s, as far as that can be known.
 template <class Real>
-double expected_speed(const Compilation<Real>& compilation, State<Real>& state,
-                      const std::vector<Solid>& solids, const StepPlan<Real>& plan) {
+double expected_speed(const Compilation<Real>& compilation, const State<Real>& state,
+                      const std::vector<Solid>& solids) {
+  const Bounds box = box_of_material(compilation, state);
   double speed = state.counters.max_speed;
   for_each_effect(compilation.effects, [&](const auto& effect) {
     if (!effect.on()) return;
@@ -84,13 +82,13 @@ double expected_speed(const Compilation<Real>& compilation, State<Real>& state,
   });
   const Vec3 gravity = compilation.surroundings.gravity;
   if (const double g = gravity.norm(); g > 0.0) {
-    const double height =
-        height_of_fall(box_of_material(compilation, state), solids, gravity / g, state.spacing);
+    const double height = height_of_fall(box, solids, gravity / g, state.spacing);
     speed = std::sqrt(speed * speed + 2.0 * g * height);
   }
-  if (plan.speeds.empty()) return speed;
-  for (const auto& pass : plan.order) pass.run(state);
-  for (const auto& fastest : plan.speeds) speed = std::max(speed, fastest(0.0, kForEver));
+  const Vec3 block = kBlockSide * state.spacing * Vec3::Ones();  // how far nodes reach beyond particles
+  for_each_effect(compilation.effects, [&](const auto& effect) {
+    if (effect.on()) speed = std::max(speed, effect.top_speed(solids, {box.lower - block, box.upper + block}));
+  });
   return speed;
 }
 
@@ -103,20 +101,20 @@ double longest_frame(const TimeDescription& time) {
 }
 
 template <class Real>
-StepForecast forecast(const Compilation<Real>& compilation, State<Real>& state,
-                      const std::vector<Solid>& solids, const StepPlan<Real>& plan) {
+StepForecast forecast(const Compilation<Real>& compilation, const State<Real>& state,
+                      const std::vector<Solid>& solids) {
   const Scene& scene = compilation.scene;
   StepForecast forecast;
   forecast.frame = longest_frame(scene.time);
-  forecast.speed = expected_speed(compilation, state, solids, plan);
+  forecast.speed = expected_speed(compilation, state, solids);
   Counters counters = state.counters;
   counters.max_speed = forecast.speed;
-  StepLimits limits = plan.limits;
-  limits.sets.clear();
-  forecast.implicit_step = choose_step(limits, plan.transfer, state.spacing, counters, forecast.frame);
+  const TransferChoice transfer = transfer_choice(scene);
+  StepLimits limits = step_limits(scene);
+  forecast.implicit_step = choose_step(limits, transfer, state.spacing, counters, forecast.frame);
   for (const auto& set : state.sets)
     limits.sets.push_back(stiffness_of(material_of(scene, set.material).elasticity()));
-  forecast.explicit_step = choose_step(limits, plan.transfer, state.spacing, counters, forecast.frame);
+  forecast.explicit_step = choose_step(limits, transfer, state.spacing, counters, forecast.frame);
   forecast.explicit_cost = step_cost(scene);
   forecast.effects_cost = effects_cost(scene);
   return forecast;
@@ -162,16 +160,17 @@ IntegratorChoice cheaper_integrator(const StepForecast& forecast, std::span<cons
 }
 
 template <class Real>
-IntegratorChoice choose_integrator(const Compilation<Real>& compilation, State<Real>& state,
-                                   const std::vector<Solid>& solids, const StepPlan<Real>& plan) {
+IntegratorChoice choose_integrator(const Compilation<Real>& compilation, const State<Real>& state,
+                                   const std::vector<Solid>& solids, const char* explicit_only) {
   const Integrator asked = compilation.scene.time.integrator;
   const auto given = compilation.options.implicit_costs;
   const std::span<const ImplicitCost> costs = given.empty() ? std::span(kImplicitCosts) : given;
   IntegratorChoice choice;
-  choice.reason =
-      asked == Integrator::kAuto ? "the key 'sleep' goes with explicit steps only" : "as time.integrator says";
-  if (asked == Integrator::kExplicit || (asked == Integrator::kAuto && plan.rest)) return choice;
-  const StepForecast forecast = repose::forecast(compilation, state, solids, plan);
+  choice.reason = asked == Integrator::kAuto && explicit_only != nullptr
+                      ? "the key '" + std::string(explicit_only) + "' goes with explicit steps only"
+                      : "as time.integrator says";
+  if (asked == Integrator::kExplicit || (asked == Integrator::kAuto && explicit_only != nullptr)) return choice;
+  const StepForecast forecast = repose::forecast(compilation, state, solids);
   if (asked == Integrator::kAuto) return cheaper_integrator(forecast, costs);
   choice.implicit = true;
   choice.step = forecast.implicit_step.dt;
@@ -179,9 +178,9 @@ IntegratorChoice choose_integrator(const Compilation<Real>& compilation, State<R
   return choice;
 }
 
-template IntegratorChoice choose_integrator(const Compilation<float>&, State<float>&, const std::vector<Solid>&,
-                                            const StepPlan<float>&);
-template IntegratorChoice choose_integrator(const Compilation<double>&, State<double>&,
-                                            const std::vector<Solid>&, const StepPlan<double>&);
+template IntegratorChoice choose_integrator(const Compilation<float>&, const State<float>&,
+                                            const std::vector<Solid>&, const char*);
+template IntegratorChoice choose_integrator(const Compilation<double>&, const State<double>&,
+                                            const std::vector<Solid>&, const char*);
 
 }  // namespace repose

@@ -240,7 +240,7 @@ void describe(Fields& fields, Scene& scene) {
         "motion of \"" + collider.name + "\" must stay in the plane of plane_strain and turn about its axis");
   }
   fields.object("output", given, false, "what is written per frame", [&](Fields& f) {
-    describe_output(f, scene.output, scene.grid.spacing, all_keep(scene, kBirth));
+    describe_output(f, scene.output, scene.grid.spacing, all_keep(scene, kBirth.kName));
   });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",
                 [&](Fields& f) { describe_camera(f, scene.camera); });

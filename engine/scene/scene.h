@@ -13,7 +13,7 @@
 #include "engine/effect/effects.h"
 #include "engine/geometry/seeding.h"
 #include "engine/geometry/shape.h"
-#include "engine/scene/clock.h"
+#include "engine/plan/clock.h"
 #include "kernels/layout/stencil.h"
 #include "kernels/material/materials.h"
 #include "kernels/transfer/transfers.h"

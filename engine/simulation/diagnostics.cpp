@@ -83,12 +83,9 @@ Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const
   // D, the second moment of a stencil about its particle.
   const double inverse_d = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)].inverse_d;
   const double affine_inertia = state.spacing * state.spacing / inverse_d;
-  const double radius = block_radius(state.spacing);
   threads.for_each(owners.size(), [&](std::size_t owner) {
-    const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
-    const Vec3 center = state.world(block, {2.0, 2.0, 2.0});
-    const bool near = std::any_of(solids.begin(), solids.end(),
-                                  [&](const Solid& solid) { return solid.distance(center) < radius; });
+    const Index3 block = state.grid.coordinates_of_owner(owner);
+    const bool near = any_near(solids, state, block);
     for (const auto& set : state.sets) {
       const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {

@@ -2,6 +2,7 @@
 // run per block in double and then over blocks in their order, so they do not depend on threads.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -10,6 +11,7 @@
 #include "engine/base/parallel.h"
 #include "engine/effect/solid.h"
 #include "engine/scene/scene.h"
+#include "engine/state/block_extent.h"
 #include "engine/state/state.h"
 
 namespace repose {
@@ -32,15 +34,6 @@ struct Diagnostics {
   std::uint32_t deepest_id = 0;         ///< which particle
 };
 
-struct MemoryUse {
-  std::size_t particle_bytes = 0;  ///< channels
-  std::size_t order_bytes = 0;     ///< ordering, and the stepper's numbers per block
-  std::size_t scratch_bytes = 0;   ///< of the threads, whatever the scene
-  std::size_t grid_bytes = 0;      ///< tree, tables and node fields
-  std::size_t blocks = 0;
-  std::uint64_t active_nodes = 0;
-};
-
 /// What has begun and what has ended so far. In particles: initial + emitted - removed = held, exactly.
 struct LedgerReport {
   struct Entry {
@@ -53,9 +46,13 @@ struct LedgerReport {
   std::vector<Entry> emitters, sinks;  ///< by name
 };
 
-/// How far a particle of a block can be from the block's middle, m.
-inline double block_radius(double spacing) {
-  return 0.5 * std::sqrt(3.0) * kArenaSide * spacing;
+/// Whether particles of a block may be within one of the solids, which stand still.
+template <class Real>
+bool any_near(const std::vector<Solid>& solids, const State<Real>& state, const Index3& block) {
+  const Vec3 middle = state.world(block, kMiddleOfParticles);
+  return std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
+    return solid.distance(middle) < radius_of_particles() * state.spacing;
+  });
 }
 
 template <class Real>

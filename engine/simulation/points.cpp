@@ -102,7 +102,7 @@ void put_elastic_strain(const Source<Real>& source, std::vector<float>& values) 
 template <class Real>
 void put_density(const Source<Real>& source, std::vector<float>& values) {
   const double rest = source.material.elasticity().density;
-  const std::size_t channel = source.set.extra_index(kVolumeGained);
+  const std::size_t channel = source.set.extra_index(kVolumeGained.kName);
   const Real* gained = channel < source.set.extra.size() ? source.set.extra[channel].values.data() : nullptr;
   for (std::size_t p = 0; p < source.set.count; ++p) {
     const double growth = trace_of(source.set, p) + (gained != nullptr ? double(gained[p]) : 0.0);
@@ -121,7 +121,7 @@ void put_speed(const Source<Real>& source, std::vector<float>& values) {
 
 template <class Real>
 void put_age(const Source<Real>& source, std::vector<float>& values) {
-  const std::size_t channel = source.set.extra_index(kBirth);
+  const std::size_t channel = source.set.extra_index(kBirth.kName);
   const bool known = channel < source.set.extra.size();
   for (std::size_t p = 0; p < source.set.count; ++p) {
     const double birth = known ? double(source.set.extra[channel].values[p]) : std::nan("");
@@ -183,7 +183,7 @@ void put_positions(const State<Real>& state, const Source<Real>& source, PointCl
   const ParticleSet<Real>& set = source.set;
   const auto owners = state.grid.owners();
   for (std::size_t owner = 0; set.count > 0 && owner < owners.size(); ++owner) {
-    const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+    const Index3 block = state.grid.coordinates_of_owner(owner);
     for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
       const Vec3 x = state.world(block, set, p);
       cloud.position[source.row[p]] = {x[0], x[1], x[2]};
@@ -218,6 +218,13 @@ std::vector<float> by_set(const std::vector<Source<Real>>& sources, std::size_t 
 }
 
 }  // namespace
+
+int components_of(OutputAttribute attribute) {
+  for (const Recipe<float>& recipe : kRecipes<float>) {
+    if (recipe.attribute == attribute) return recipe.components;
+  }
+  return 0;
+}
 
 template <class Real>
 PointCloud make_points(const Scene& scene, const State<Real>& state, const Kernels<Real>& kernels,

@@ -30,6 +30,9 @@ struct PointsWanted {
   bool mass = false;  ///< PointCloud::mass
 };
 
+/// How many numbers of a point an attribute is; not of channels, which scenes decide.
+int components_of(OutputAttribute attribute);
+
 /// The cloud, sorted by id; ids may have gaps. With several materials the attribute "material" is the place of
 /// a particle's law in the list of materials.
 template <class Real>

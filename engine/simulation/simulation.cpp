@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "engine/io/checkpoint.h"
+#include "engine/plan/frame_clock.h"
+#include "engine/simulation/memory.h"
 #include "engine/simulation/warnings.h"
 #include "engine/state/state_hash.h"
 
@@ -40,8 +42,7 @@ std::string describe_unsolved(const StepReport& report) {
       text, sizeof text,
       "no velocities solve a step, even one of %.3g s: %s (%d iterations, residual %.3g of %.3g asked); a "
       "smaller time.max_step, a larger implicit.tolerance or grid.precision double may help",
-      report.dt, unsolved_text(*report.implicit).c_str(), newton.iterations, newton.last,
-      newton.tolerance);
+      report.dt, unsolved_text(*report.implicit).c_str(), newton.iterations, newton.last, newton.tolerance);
   return text;
 }
 
@@ -52,10 +53,16 @@ class SimulationOf final : public Simulation {
       : scene_(scene),
         target_(options.target),
         integrator_(std::move(compiled.integrator)),
+        clock_(clock_of(scene.time)),
         solids_(std::move(compiled.solids)),
         state_(std::move(compiled.state)),
-        stepper_(std::move(compiled.plan), threads) {
-    stepper_.order_if_due(state_);
+        stepper_(std::move(compiled.plan), threads) {}
+
+  /// Brings the state into order, makes room for steps, and looks at where bodies start. Error 78.
+  Result<void> begin() {
+    if (auto ordered = stepper_.order_if_due(state_); !ordered) return refuse(ordered.error());
+    stepper_.reserve(state_);
+    if (auto fits = stepper_.order_if_due(state_); !fits) return refuse(fits.error());
     stepper_.begin_frame(state_);
     warnings_ = scene_warnings(scene_);
     for (std::string& warning : thin_solid_warnings(solids_, state_.spacing)) {
@@ -64,12 +71,13 @@ class SimulationOf final : public Simulation {
     for (std::string& warning : seeding_warnings(solids_at(solids_, 0.0), state_, stepper_.threads())) {
       warnings_.push_back(std::move(warning));
     }
+    return {};
   }
 
   Result<StepReport> step() override {
     auto report = try_step(std::numeric_limits<double>::infinity());
     if (!report) return report;
-    state_.counters.time += report->dt;
+    FrameClock::advance_freely(state_.counters, report->dt);
     watch_speed();
     return report;
   }
@@ -94,10 +102,11 @@ class SimulationOf final : public Simulation {
   }
   LedgerReport ledger() const override { return ledger_report(scene_, state_); }
   std::uint64_t hash() const override { return state_hash(state_); }
-  MemoryUse memory() const override {
-    return {state_.particle_bytes(), stepper_.bytes(),   stepper_.scratch_bytes(),
-            state_.grid_bytes(),     state_.grid.size(), state_.grid.active_nodes()};
+  MemoryUse memory() const override { return stepper_.memory(state_); }
+  double writing_bytes() const override {
+    return stepper_.plan().memory.writing(state_.particles(), state_.grid.size());
   }
+  bool sound() const override { return sound_; }
   const Profile& profile() const override { return stepper_.profile(); }
   void reset_profile() override { stepper_.reset_profile(); }
   const std::optional<Offender>& offender() const override { return offender_; }
@@ -125,17 +134,26 @@ class SimulationOf final : public Simulation {
   }
   Result<void> load(const std::string& path) override {
     if (auto loaded = load_checkpoint(path, scene_hash(scene_), state_); !loaded) return loaded;
-    stepper_.follow(state_);
+    if (auto followed = stepper_.follow(state_); !followed) {
+      sound_ = false;
+      return refuse(followed.error());
+    }
     return {};
   }
 
  private:
-  /// Only what emitters make can need memory that nobody has counted before the run.
+  Error refuse(Error error) const {
+    if (error.where.empty()) error.where = scene_.name;
+    return error;
+  }
+
+  /// Memory is counted before it is asked for; others may have taken it.
   template <class Work>
   auto unless_memory_ends(const Work& work) -> decltype(work()) {
     try {
       return work();
     } catch (const std::bad_alloc&) {
+      sound_ = false;
       return Error{ErrorKind::kMemory, "memory ran out; a coarser grid.spacing needs less", scene_.name};
     }
   }
@@ -144,7 +162,7 @@ class SimulationOf final : public Simulation {
     return unless_memory_ends([&]() -> Result<StepReport> {
       StepReport report = stepper_.step(state_, remaining);
       offender_ = report.offender;
-      if (report.error) return *report.error;
+      if (report.error) return refuse(*report.error);
       if (report.accepted) return report;
       if (!report.offender) return Error{ErrorKind::kPhysics, describe_unsolved(report), scene_.name};
       return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
@@ -162,56 +180,51 @@ class SimulationOf final : public Simulation {
   Scene scene_;
   Target target_;
   IntegratorChoice integrator_;
+  FrameClock clock_;
   std::vector<Solid> solids_;
   State<Real> state_;
   Stepper<Real> stepper_;
   std::optional<Offender> offender_;
   std::vector<std::string> warnings_;
   bool warned_of_speed_ = false;
+  bool sound_ = true;
 };
+
+/// Adds a step to what its frame took.
+void add_step(const StepReport& report, FrameReport& frame) {
+  frame.redone += report.redone;
+  if (frame.first_refusal.empty()) frame.first_refusal = report.first_refusal;
+  if (report.implicit) {
+    frame.newton_iterations += report.implicit->newton.iterations;
+    frame.linear_iterations += report.implicit->newton.linear_iterations;
+  }
+  ++frame.steps;
+  ++frame.limits[static_cast<std::size_t>(report.limit)];
+  frame.least_dt = std::min(frame.least_dt, report.dt);
+  frame.largest_dt = std::max(frame.largest_dt, report.dt);
+}
 
 template <class Real>
 Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callback) {
-  const Clock clock = clock_of(scene_.time);
   Counters& counters = state_.counters;
   FrameReport frame;
   frame.resumed = counters.time_in_frame > 0.0;
-  if (!frame.resumed) {
-    const CleanFloatingPoint clean;
-    stepper_.begin_frame(state_);
-  }
   frame.least_dt = std::numeric_limits<double>::infinity();
+  if (!frame.resumed) stepper_.begin_frame(state_);
   const Profile before = stepper_.profile();
   const auto start = std::chrono::steady_clock::now();
-  const double begin = clock.at(counters.frame), length = clock.length(counters.frame);
-  while (counters.time_in_frame < length) {
-    const double remaining = length - counters.time_in_frame;
-    const auto tried = try_step(remaining);
-    if (!tried) return tried.error();
-    const StepReport& report = *tried;
-    frame.redone += report.redone;
-    if (frame.first_refusal.empty()) frame.first_refusal = report.first_refusal;
-    if (report.implicit) {
-      frame.newton_iterations += report.implicit->newton.iterations;
-      frame.linear_iterations += report.implicit->newton.linear_iterations;
-    }
-    // A step that fills the remainder ends on the frame exactly, whatever rounding the sum has.
-    const bool last = report.dt >= remaining * (1.0 - 1e-9);
-    counters.time_in_frame = last ? length : counters.time_in_frame + report.dt;
-    counters.time = begin + counters.time_in_frame;
-    ++frame.steps;
-    ++frame.limits[static_cast<std::size_t>(report.limit)];
-    frame.least_dt = std::min(frame.least_dt, report.dt);
-    frame.largest_dt = std::max(frame.largest_dt, report.dt);
+  while (!clock_.frame_is_full(counters)) {
+    const auto report = try_step(clock_.remaining(counters));
+    if (!report) return report.error();
+    clock_.advance(counters, report->dt);
+    add_step(*report, frame);
     watch_speed();
-    if (callback && !callback(report, counters)) break;
+    if (callback && !callback(*report, counters)) break;
   }
-  if (counters.time_in_frame >= length) {
-    counters.time_in_frame = 0.0;
-    ++counters.frame;
-    counters.time = clock.at(counters.frame);
+  if (clock_.frame_is_full(counters)) {
+    clock_.end_frame(counters);
     if (auto ended = unless_memory_ends([&] { return stepper_.end_frame(state_); }); !ended)
-      return ended.error();
+      return refuse(ended.error());
   }
   frame.frame = counters.frame;
   frame.time = counters.time;
@@ -233,13 +246,17 @@ std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes(
 
 template <class Real>
 Result<std::unique_ptr<Simulation>> create_of(const Scene& scene, const SimulationOptions& options) {
-  auto compiled =
-      compile_scene<Real>(scene, {options.target, options.allow_outside_paths, options.memory_limit});
+  const double limit = options.memory_limit > 0.0 ? options.memory_limit : default_memory_limit();
+  auto compiled = compile_scene<Real>(scene, {options.target, options.allow_outside_paths, limit});
   if (!compiled) return compiled.error();
+  compiled->plan.memory = writing_memory(scene);
+  compiled->plan.memory.limit = limit;
   const int threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  return std::unique_ptr<Simulation>(
-      std::make_unique<SimulationOf<Real>>(scene, options, std::move(*compiled), std::max(1, threads)));
+  auto simulation =
+      std::make_unique<SimulationOf<Real>>(scene, options, std::move(*compiled), std::max(1, threads));
+  if (auto begun = simulation->begin(); !begun) return begun.error();
+  return std::unique_ptr<Simulation>(std::move(simulation));
 }
 
 }  // namespace

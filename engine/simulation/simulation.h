@@ -23,7 +23,8 @@ struct SimulationOptions {
   int threads = 0;  ///< 0: as many as the machine has
   Target target = best_target();
   bool allow_outside_paths = false;
-  double memory_limit = 0.0;  ///< bytes; 0: 85 % of the machine's memory
+  /// Bytes that the simulation may take, with what writing its frames takes; 0: 85 % of the machine's memory.
+  double memory_limit = 0.0;
 };
 
 /// What a frame took.
@@ -33,7 +34,7 @@ struct FrameReport {
   bool resumed = false;    ///< it was begun before: what it took until then is in none of the figures below
   std::int64_t steps = 0;
   double least_dt = 0.0, largest_dt = 0.0;                    ///< s
-  std::array<std::int64_t, 6> limits{};                       ///< steps bound by each Limit
+  std::array<std::int64_t, kLimits> limits{};                 ///< steps bound by each Limit
   std::int64_t redone = 0;                                    ///< halvings
   std::string first_refusal;                                  ///< why the first of them; empty without any
   std::int64_t newton_iterations = 0, linear_iterations = 0;  ///< of implicit steps that were made
@@ -55,8 +56,12 @@ class Simulation {
 
   /// Steps to the end of the next frame. Error 70 when the physics gives out: the message names the particle
   /// and what would happen to it; offender() tells more. The state is then that of the last accepted step.
-  /// Error 78 when emitters have used up memory or ids; the state is then of no more use.
+  /// Error 78 when the grid, or what emitters make, needs more memory than may be used, and when ids are used
+  /// up; sound() tells whether the state can still be saved.
   virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
+
+  /// Whether the state is that of the last accepted step; false when memory ran out in the midst of a change.
+  virtual bool sound() const = 0;
 
   virtual const Counters& counters() const = 0;
   virtual std::size_t particles() const = 0;
@@ -67,7 +72,10 @@ class Simulation {
   virtual Diagnostics diagnose() = 0;
   virtual LedgerReport ledger() const = 0;
   virtual std::uint64_t hash() const = 0;
+  /// What it takes now, and has made room for.
   virtual MemoryUse memory() const = 0;
+  /// What writing a frame takes beside that, bytes, by what the scene's output asks for.
+  virtual double writing_bytes() const = 0;
   virtual const Profile& profile() const = 0;
   virtual void reset_profile() = 0;
   virtual const std::optional<Offender>& offender() const = 0;
@@ -87,7 +95,7 @@ class Simulation {
   /// when it is made; steps may add to it, each kind once.
   virtual const std::vector<std::string>& warnings() const = 0;
 
-  /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74.
+  /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74, 78.
   virtual Result<void> save(const std::string& path) const = 0;
   virtual Result<void> load(const std::string& path) = 0;
 };

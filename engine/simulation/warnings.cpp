@@ -23,29 +23,14 @@ struct Inside {
 };
 
 template <class Real>
-Vec3 position_of(const State<Real>& state, const ParticleSet<Real>& set, const Index3& block, std::size_t p) {
-  return state.world(block,
-                     {double(set.position[0][p]), double(set.position[1][p]), double(set.position[2][p])});
-}
-
-template <class Real>
-Index3 block_of(const State<Real>& state, std::size_t owner) {
-  return state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
-}
-
-template <class Real>
 Inside inside_block(const std::vector<Solid>& solids, const State<Real>& state, const ParticleSet<Real>& set,
                     std::size_t owner) {
   Inside inside;
-  const Index3 block = block_of(state, owner);
-  const Vec3 middle = state.world(block, {2.0, 2.0, 2.0});
-  const bool near = std::any_of(solids.begin(), solids.end(), [&](const Solid& solid) {
-    return solid.distance(middle) < block_radius(state.spacing);
-  });
-  if (!near) return inside;
+  const Index3 block = state.grid.coordinates_of_owner(owner);
+  if (!any_near(solids, state, block)) return inside;
   const double tolerated = kToleratedCells * state.spacing;
   for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
-    const Vec3 x = position_of(state, set, block, p);
+    const Vec3 x = state.world(block, set, p);
     double deepest = tolerated;
     for (const Solid& solid : solids) {
       const double depth = -solid.distance(x);
@@ -181,7 +166,7 @@ std::optional<std::string> speed_warning(const StepPlan<Real>& plan, const State
   if (cut.dt >= kShareWorthAWord * allowed) return std::nullopt;
   const Fastest<Real> fastest = find_fastest(state);
   if (fastest.set == nullptr) return std::nullopt;
-  const Vec3 x = position_of(state, *fastest.set, block_of(state, fastest.owner), fastest.particle);
+  const Vec3 x = state.world(state.grid.coordinates_of_owner(fastest.owner), *fastest.set, fastest.particle);
   char text[320];
   std::snprintf(
       text, sizeof text,

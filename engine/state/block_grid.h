@@ -41,6 +41,9 @@ class BlockGrid {
 
   /// The blocks that hold particles: their positions in blocks(), ascending.
   std::span<const std::int32_t> owners() const { return owners_; }
+  /// The block of an owner: its position in blocks(), and its coordinates.
+  std::size_t block_of_owner(std::size_t owner) const { return static_cast<std::size_t>(owners_[owner]); }
+  const Index3& coordinates_of_owner(std::size_t owner) const { return blocks_[block_of_owner(owner)]; }
   /// The 27 blocks around an owner, in the order of neighbour_index(): positions in blocks(), or -1.
   std::span<const std::int32_t, kNeighbours> neighbours(std::size_t owner) const {
     return std::span<const std::int32_t, kNeighbours>(&neighbours_[owner * kNeighbours], kNeighbours);

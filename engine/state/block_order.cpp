@@ -130,7 +130,7 @@ bool BlockOrder<Real>::update_grid(State<Real>& state) {
   const std::size_t owners = state.grid.owners().size();
   old_blocks_.resize(owners);
   for (std::size_t owner = 0; owner < owners; ++owner) {
-    old_blocks_[owner] = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+    old_blocks_[owner] = state.grid.coordinates_of_owner(owner);
   }
   if (!same) {
     new_blocks_.clear();
@@ -193,7 +193,7 @@ void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Thread
         for_each_arrival(state, k, owner, [&](std::size_t first, std::size_t last) {
           arrivals[owner + 1] += static_cast<std::uint32_t>(last - first);
         });
-        const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
+        const std::int32_t source = source_[state.grid.block_of_owner(owner)];
         begin[owner + 1] = arrivals[owner + 1];
         if (source < 0) return;
         const auto old = static_cast<std::size_t>(source);
@@ -217,7 +217,7 @@ template <class Real>
 void BlockOrder<Real>::sort_owner(const State<Real>& state, std::size_t k, std::size_t owner) {
   Buffers& buffers = buffers_[k];
   const std::size_t begin = buffers.begin[owner], count = buffers.begin[owner + 1] - begin;
-  const std::int32_t source = source_[static_cast<std::size_t>(state.grid.owners()[owner])];
+  const std::int32_t source = source_[state.grid.block_of_owner(owner)];
   std::size_t first = 0, last = 0;  // who was here before
   bool in_order = false;
   if (source >= 0) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/aligned_array.h"
@@ -74,7 +75,7 @@ struct ParticleSet {
   }
 
   /// Where the channel of an effect lies in `extra`; extra.size() if no effect asked for it.
-  std::size_t extra_index(const std::string& channel) const {
+  std::size_t extra_index(std::string_view channel) const {
     std::size_t index = 0;
     while (index < extra.size() && extra[index].name != channel) ++index;
     return index;

@@ -100,7 +100,7 @@ void for_each_particle(const State<Real>& state, Visit visit) {
   const auto owners = state.grid.owners();
   for (const ParticleSet<Real>& set : state.sets) {
     for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+      const Index3 block = state.grid.coordinates_of_owner(owner);
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p)
         visit(set, p, state.world(block, set, p));
     }

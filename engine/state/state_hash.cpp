@@ -31,7 +31,7 @@ std::uint64_t state_hash(const State<Real>& state) {
   const auto owners = state.grid.owners();
   for (const auto& set : state.sets) {
     for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state.grid.blocks()[static_cast<std::size_t>(owners[owner])];
+      const Index3 block = state.grid.coordinates_of_owner(owner);
       for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
         std::uint64_t hash = set.id[p];
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,12 +1,10 @@
-// Repose: whether a step may be made, decided before any particle is written, and the particle for whose sake
-// it may not. The rest of the stepper stands in stepper.cpp.
+#include "engine/step/acceptance.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "engine/plan/chunks.h"
-#include "engine/plan/transfer_stages.h"
-#include "engine/step/stepper.h"
+#include "engine/plan/transfer_passes.h"
 
 namespace repose {
 
@@ -31,9 +29,21 @@ std::string unsolved_text(const ImplicitReport& report) {
   return "";
 }
 
+template <class Real>
+Acceptance<Real>::Acceptance(StepPlan<Real>& plan)
+    : transfer_(plan.transfer),
+      moving_(plan),
+      velocity_(plan.scratch.place(kVelocityRoom.kInfo)),
+      gradient_(plan.scratch.place(kGradientRoom.kInfo)) {}
+
+template <class Real>
+void Acceptance<Real>::bound(const BlockSweep<Real>& sweep, std::size_t block) {
+  sweep.kernels().bound(moving_.of_block(sweep.state(), block), bounds_[block]);
+}
+
 /// The particle for whose sake no step is short enough.
 template <class Real>
-Offender Stepper<Real>::fastest(const State<Real>& state) const {
+Offender fastest_particle(const State<Real>& state) {
   Offender offender;
   double most = -1.0;
   for (const auto& set : state.sets) {
@@ -55,7 +65,7 @@ Offender Stepper<Real>::fastest(const State<Real>& state) const {
 }
 
 template <class Real>
-bool Stepper<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt) const {
+bool Acceptance<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt) const {
   Real low[3] = {}, high[3] = {};
   bool first = true;
   for (const std::int32_t n : state.grid.neighbours(owner)) {
@@ -80,26 +90,19 @@ bool Stepper<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt
         {fastest, std::abs(static_cast<double>(low[axis])), std::abs(static_cast<double>(high[axis]))});
   }
   const double steps = static_cast<double>(dt) / state.spacing;
-  const double gradient = std::sqrt(half_diagonal) * plan_.transfer.nodes().gradient_bound;
+  const double gradient = std::sqrt(half_diagonal) * transfer_.nodes().gradient_bound;
   return fastest * steps < 0.999 && gradient * steps < 0.999;
 }
 
 template <class Real>
-std::optional<Offender> Stepper<Real>::inspect(State<Real>& state, Real dt) {
-  const PhaseTimer timer(profile_, Phase::kInspect);
+std::optional<Offender> Acceptance<Real>::inspect(BlockSweep<Real>& sweep) {
   suspects_.clear();
-  const auto look = [&](std::size_t owner) {
-    if (!bounded(state, owner, dt)) suspects_.push_back(static_cast<std::int32_t>(owner));
-  };
-  if (rest_) {
-    for (const std::int32_t owner : rest_->attendance().awake) look(static_cast<std::size_t>(owner));
-  } else {
-    for (std::size_t owner = 0; owner < state.grid.owners().size(); ++owner) look(owner);
+  for (const std::int32_t owner : sweep.active().moving) {
+    if (!bounded(sweep.state(), static_cast<std::size_t>(owner), sweep.dt())) suspects_.push_back(owner);
   }
   found_.resize(suspects_.size());
-  threads_.for_each(suspects_.size(), [&](std::size_t i) {
-    found_[i] = inspect_block(state, static_cast<std::size_t>(suspects_[i]), dt);
-  });
+  sweep.over(suspects_,
+             [&](OccupiedBlock<Real>& block) { found_[block.position] = inspect_block(sweep, block); });
   for (const auto& offender : found_) {
     if (offender) return offender;
   }
@@ -107,34 +110,35 @@ std::optional<Offender> Stepper<Real>::inspect(State<Real>& state, Real dt) {
 }
 
 template <class Real>
-std::optional<Offender> Stepper<Real>::inspect_block(State<Real>& state, std::size_t owner, Real dt) {
-  Scratch<Real>& mine = scratch();
-  load_arenas(state, owner, mine);
-  const Lattice<Real> lattice = make_lattice(state, plan_.transfer);
-  const auto kernel = plan_.kernels->transfer[plan_.transfer.stencil][plan_.transfer.transfer].gather;
+std::optional<Offender> Acceptance<Real>::inspect_block(const BlockSweep<Real>& sweep,
+                                                        OccupiedBlock<Real>& block) const {
+  moving_.load(block);
+  const Kernels<Real>& kernels = sweep.kernels();
+  const auto gather = kernels.transfer[transfer_.stencil][transfer_.transfer].gather;
+  GatherInput<Real> in{};
+  in.lattice = make_lattice(block.state, transfer_);
+  for (std::size_t axis = 0; axis < 3; ++axis) in.moving[axis] = block.scratch.at(velocity_) + axis * kChunk;
+  for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = block.scratch.at(gradient_) + k * kChunk;
   std::optional<Offender> offender;
-  for_each_chunk(state, owner, owner, dt, scratch(), [&](std::size_t, Chunk<Real>& chunk) {
+  block.for_each_chunk([&](std::size_t, Chunk<Real>& chunk) {
     if (offender) return;
-    GatherInput<Real> in{};
     in.particles = chunk.particles;
-    in.lattice = lattice;
-    for (std::size_t axis = 0; axis < 3; ++axis) in.moving[axis] = mine.velocity.data() + axis * kChunk;
-    for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = mine.gradient.data() + k * kChunk;
-    kernel(in, mine.arena.data());
+    gather(in, block.scratch.at(moving_.place()));
     const std::size_t p =
-        plan_.kernels->inspect(in.moving, in.gradient, chunk.particles.count, dt, lattice.spacing);
-    if (p < chunk.particles.count) offender = accuse(state, owner, chunk, p, in);
+        kernels.inspect(in.moving, in.gradient, chunk.particles.count, block.dt, in.lattice.spacing);
+    if (p < chunk.particles.count) offender = accuse(block, chunk, p, in);
   });
   return offender;
 }
 
 template <class Real>
-Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, const Chunk<Real>& chunk,
-                               std::size_t p, const GatherInput<Real>& trial) const {
+Offender Acceptance<Real>::accuse(const OccupiedBlock<Real>& block, const Chunk<Real>& chunk, std::size_t p,
+                                  const GatherInput<Real>& trial) const {
+  const State<Real>& state = block.state;
   Offender offender;
   offender.set = chunk.set.name;
   offender.id = chunk.set.id[chunk.first + p];
-  offender.block = state.grid.blocks()[static_cast<std::size_t>(state.grid.owners()[owner])];
+  offender.block = state.grid.coordinates_of_owner(block.owner);
   std::array<double, 3> offset{};
   Mat3 map = Mat3::Identity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -152,11 +156,9 @@ Offender Stepper<Real>::accuse(const State<Real>& state, std::size_t owner, cons
   return offender;
 }
 
-#define REPOSE_INSTANTIATE(Real)                                      \
-  template Offender Stepper<Real>::fastest(const State<Real>&) const; \
-  template std::optional<Offender> Stepper<Real>::inspect(State<Real>&, Real);
-REPOSE_INSTANTIATE(float)
-REPOSE_INSTANTIATE(double)
-#undef REPOSE_INSTANTIATE
+template class Acceptance<float>;
+template class Acceptance<double>;
+template Offender fastest_particle(const State<float>&);
+template Offender fastest_particle(const State<double>&);
 
 }  // namespace repose

@@ -1,12 +1,9 @@
-// Repose: one step from beginning to end; whether it may be made is in acceptance.cpp, what happens
-// between steps in between_steps.cpp, and how sleepers wake in waking.cpp.
 #include "engine/step/stepper.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/plan/chunks.h"
-#include "engine/plan/transfer_stages.h"
+#include "engine/base/memory.h"
 
 namespace repose {
 namespace {
@@ -16,127 +13,91 @@ constexpr int kMostHalvings = 3;
 /// A step shorter than this share of the scene's longest would never end: nothing real moves so fast.
 constexpr double kLeastShare = 1e-12;
 
+/// The plan with the room that the solve needs.
+template <class Real>
+StepPlan<Real> with_scratch(StepPlan<Real> plan) {
+  if (plan.implicit) ParticleSweep<Real>::claim_scratch(plan.scratch);
+  return plan;
+}
+
 }  // namespace
 
 template <class Real>
 Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
-    : plan_(std::move(plan)), threads_(threads), scratch_(static_cast<std::size_t>(threads_.count())) {
-  if (plan_.rest) rest_.emplace(*plan_.rest);
-  if (plan_.implicit) implicit_.emplace(plan_, threads_, scratch_, profile_);
+    : plan_(with_scratch(std::move(plan))),
+      threads_(threads),
+      active_(plan_),
+      between_(plan_, threads_, active_, profile_),
+      moving_(plan_),
+      acceptance_(plan_),
+      sweep_(plan_, threads_, active_.set()),
+      arena_(plan_.scratch.place_arena(kArena)),
+      before_forces_(plan_.transfer.figures().keeps_velocity ? plan_.scratch.place_arena(kArenaBeforeForces)
+                                                             : 0) {
+  if (plan_.implicit) implicit_.emplace(sweep_, profile_);
 }
 
 template <class Real>
 StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   const CleanFloatingPoint clean;
-  if (auto events = carry_out_events(state, Moment::kBeforeStep); !events) {
-    StepReport report;
-    report.error = events.error();
-    return report;
-  }
-  order_if_due(state);
-  const StepSize size = next_step(plan_, state.spacing, state.counters, remaining);
   StepReport report;
-  report.limit = size.limit;
-  if (!(size.dt >= kLeastShare * plan_.limits.max_step)) {  // also when a speed is not finite
-    report.dt = size.dt;
-    report.offender = fastest(state);
+  if (auto ready = change_particles(state, Moment::kBeforeStep); !ready) {
+    report.error = ready.error();
     return report;
   }
-  if (rest_) rest_->attend(state, plan_.disturbances, state.counters.time + size.dt);
+  if (auto ready = order_if_due(state); !ready) {
+    report.error = ready.error();
+    return report;
+  }
+  const StepSize size = next_step(plan_, state.spacing, state.counters, remaining);
+  report.limit = size.limit;
+  report.dt = size.dt;
+  if (!(size.dt >= kLeastShare * plan_.limits.max_step)) {  // also when a speed is not finite
+    report.offender = fastest_particle(state);
+    return report;
+  }
+  active_.begin_step(state, state.counters.time + size.dt);
   for (; report.redone <= kMostHalvings; ++report.redone) {
     report.dt = std::ldexp(size.dt, -report.redone);
-    const Real dt = static_cast<Real>(report.dt);
-    scatter(state, dt);
-    for (const auto& pass : plan_.prepare) pass.run(state, dt);
-    update_nodes(state, dt);
-    if (implicit_ && !solve(state, dt, report)) {
-      report.offender.reset();
-      if (report.redone == 0) report.first_refusal = unsolved_text(*report.implicit);
-      continue;
-    }
-    if (rest_) wake(state, dt);
-    report.offender = inspect(state, dt);
-    if (report.offender) {
-      if (report.redone == 0) report.first_refusal = refusal_text(*report.offender);
-      continue;
-    }
-    if (implicit_) implicit_->accept();
-    gather(state, dt);
-    finish(state, dt);
-    state.counters.last_dt = report.dt;
-    plan_.for_each_measure(state.tallies.data(), [&](const MeasurePass<Real>& measure, double* tallies) {
-      if (measure.after_step) measure.after_step(state, report.dt, tallies);
-    });
+    sweep_.begin(state, static_cast<Real>(report.dt));
+    if (!try_step(report)) continue;
+    gather();
+    finish(report.dt);
     report.accepted = true;
-    return report;
+    break;
   }
   return report;
 }
 
-/// The owners of a colour that take part.
+/// All that comes before particles change; whether they may.
 template <class Real>
-std::span<const std::int32_t> Stepper<Real>::scattering(const State<Real>& state, int colour) const {
-  if (rest_) return rest_->attendance().scatter[static_cast<std::size_t>(colour)];
-  return state.grid.colour(colour);
-}
-
-/// Calls visit(block) for the blocks of nodes that take part.
-template <class Real>
-template <class Visit>
-void Stepper<Real>::for_each_block(const State<Real>& state, Visit visit) {
-  constexpr std::size_t kGrain = 8;
-  if (!rest_) {
-    threads_.for_each(state.grid.size(), visit, kGrain);
-    return;
-  }
-  const auto& blocks = rest_->attendance().blocks;
-  threads_.for_each(
-      blocks.size(), [&](std::size_t i) { visit(static_cast<std::size_t>(blocks[i])); }, kGrain);
-}
-
-/// Calls visit(owner) for the owners whose particles move.
-template <class Real>
-template <class Visit>
-void Stepper<Real>::for_each_awake(const State<Real>& state, Visit visit) {
-  if (!rest_) {
-    threads_.for_each(state.grid.owners().size(), visit);
-    return;
-  }
-  const auto& owners = rest_->attendance().awake;
-  threads_.for_each(owners.size(), [&](std::size_t i) { visit(static_cast<std::size_t>(owners[i])); });
+bool Stepper<Real>::try_step(StepReport& report) {
+  scatter();
+  for (const auto& pass : plan_.prepare) pass.run(sweep_.state(), sweep_.dt());
+  update_nodes();
+  report.offender.reset();
+  if (implicit_ && !solve(report)) return false;
+  active_.wake_margin(sweep_);
+  const PhaseTimer timer(profile_, Phase::kInspect);
+  report.offender = acceptance_.inspect(sweep_);
+  if (report.offender) report.refuse(refusal_text(*report.offender));
+  if (!report.offender && implicit_) implicit_->accept();
+  return !report.offender;
 }
 
 template <class Real>
-void Stepper<Real>::clear_nodes(State<Real>& state) {
-  const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
-  const auto clear = [&](std::size_t first, std::size_t blocks) {
-    const std::size_t bytes = blocks * kBlockValues * sizeof(Real);
-    std::memset(state.nodes.block(first), 0, bytes);
-    if (keeps_velocity) std::memset(state.before_forces.block(first), 0, bytes);
-  };
-  if (rest_) {
-    for_each_block(state, [&](std::size_t block) { clear(block, 1); });
-    return;
-  }
-  constexpr std::size_t kGrain = 64;
-  threads_.for_each((state.grid.size() + kGrain - 1) / kGrain, [&](std::size_t piece) {
-    const std::size_t first = piece * kGrain;
-    clear(first, std::min(kGrain, state.grid.size() - first));
-  });
-}
-
-template <class Real>
-void Stepper<Real>::scatter(State<Real>& state, Real dt) {
+void Stepper<Real>::scatter() {
   const PhaseTimer timer(profile_, Phase::kScatter);
-  clear_nodes(state);
+  State<Real>& state = sweep_.state();
+  const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
+  sweep_.for_each_block(
+      [&](std::size_t block) {
+        std::memset(state.nodes.block(block), 0, kBlockValues * sizeof(Real));
+        if (keeps_velocity) std::memset(state.before_forces.block(block), 0, kBlockValues * sizeof(Real));
+      },
+      64);
   runs_.assign(state.grid.owners().size(), 0);
-  for (int colour = 0; colour < 8; ++colour) {
-    const auto owners = scattering(state, colour);
-    threads_.for_each(owners.size(), [&](std::size_t i) {
-      const std::size_t next = i + 1 < owners.size() ? i + 1 : i;
-      scatter_block(state, static_cast<std::size_t>(owners[i]), static_cast<std::size_t>(owners[next]), dt);
-    });
-  }
+  sweep_.over_telling([this](OccupiedBlock<Real>& block) { scatter_block(block); });
 }
 
 namespace {
@@ -156,143 +117,76 @@ template <class Real>
 }  // namespace
 
 template <class Real>
-void Stepper<Real>::scatter_block(State<Real>& state, std::size_t owner, std::size_t next, Real dt) {
-  Scratch<Real>& mine = scratch();
+void Stepper<Real>::scatter_block(OccupiedBlock<Real>& block) {
   const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
-  std::memset(mine.arena.data(), 0, kArenaValues * sizeof(Real));
-  if (keeps_velocity) std::memset(mine.before_arena.data(), 0, kArenaValues * sizeof(Real));
+  block.clear(arena_);
+  if (keeps_velocity) block.clear(before_forces_);
   std::uint64_t rows = 0;
   std::size_t runs = 0;
-  for_each_chunk(state, owner, next, dt, scratch(), [&](std::size_t k, Chunk<Real>& chunk) {
+  block.for_each_chunk([&](std::size_t k, Chunk<Real>& chunk) {
     REPOSE_VALIDATE(within_reach(chunk.particles, plan_.transfer.nodes()));
     for (const auto& pass : plan_.scatter[k]) pass.run(chunk);
-    rows |= chunk.rows;
-    runs += chunk.runs;
+    rows |= chunk.touched.rows;
+    runs += chunk.touched.runs;
   });
-  const auto neighbours = state.grid.neighbours(owner);
-  const auto add = [&](const Real* arena, NodeField<Real>& field) {
-    Real* blocks[kNeighbours];
-    for (std::size_t n = 0; n < kNeighbours; ++n) {
-      blocks[n] = neighbours[n] < 0 ? nullptr : field.block(static_cast<std::size_t>(neighbours[n]));
-    }
-    plan_.kernels->stencil[plan_.transfer.stencil].add_arena(arena, rows, blocks);
-  };
-  add(mine.arena.data(), state.nodes);
-  if (keeps_velocity) add(mine.before_arena.data(), state.before_forces);
-  state.rows_touched[owner] = rows;
-  runs_[owner] = runs;
+  *block.rows = rows;
+  runs_[block.owner] = runs;
+  State<Real>& state = block.state;
+  block.add(arena_, [&state](std::size_t b) { return state.nodes.block(b); });
+  if (keeps_velocity)
+    block.add(before_forces_, [&state](std::size_t b) { return state.before_forces.block(b); });
 }
 
+/// Forces; where steps are explicit also what holds nodes, while they are in cache.
 template <class Real>
-void Stepper<Real>::update_nodes(State<Real>& state, Real dt) {
+void Stepper<Real>::update_nodes() {
   const PhaseTimer timer(profile_, Phase::kNodes);
-  bounds_.resize(state.grid.size());
-  for_each_block(state, [&](std::size_t block) {
-    NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
-    for (const auto& pass : plan_.nodes) pass.run(nodes);
-    if (!implicit_) hold_block(nodes);
+  State<Real>& state = sweep_.state();
+  acceptance_.begin(state.grid.size());
+  sweep_.for_each_block([&](std::size_t b) {
+    const NodeBlock<Real> block{state, b, state.nodes.block(b), sweep_.dt()};
+    for (const auto& pass : plan_.nodes) pass.run(block);
+    for (const auto& pass : plan_.holds) pass.run(block);
+    if (!implicit_) acceptance_.bound(sweep_, b);
   });
 }
 
-/// What holds a block's nodes, and how fast those are then that move particles. Explicit steps do it while the
-/// nodes are in cache.
+/// Solves for the nodes' velocities. Returns whether a solution was found.
 template <class Real>
-void Stepper<Real>::hold_block(NodeBlock<Real>& nodes) {
-  for (const auto& pass : plan_.holds) pass.run(nodes);
-  const auto& rubbed = nodes.state.after_friction;
-  const bool rubs = plan_.advection == Advection::kAfterFriction && rubbed.has(nodes.block);
-  plan_.kernels->bound(rubs ? rubbed.block(nodes.block) : nodes.nodes, bounds_[nodes.block]);
-}
-
-/// Solves for the nodes' velocities, then holds them. Returns whether a solution was found.
-template <class Real>
-bool Stepper<Real>::solve(State<Real>& state, Real dt, StepReport& report) {
-  report.implicit = implicit_->solve(state, dt);
-  if (!solved(report.implicit->newton.end)) return false;
+bool Stepper<Real>::solve(StepReport& report) {
+  report.implicit = implicit_->solve();
+  if (!solved(report.implicit->newton.end)) {
+    report.refuse(unsolved_text(*report.implicit));
+    return false;
+  }
   const PhaseTimer timer(profile_, Phase::kNodes);
-  for_each_block(state, [&](std::size_t block) {
-    NodeBlock<Real> nodes{state, block, state.nodes.block(block), dt, state.counters.time};
-    hold_block(nodes);
-  });
+  sweep_.for_each_block([&](std::size_t block) { acceptance_.bound(sweep_, block); });
   return true;
 }
 
-/// Loads what moves the particles of an owner; returns whether they keep another velocity, then loaded beside
-/// it.
 template <class Real>
-bool Stepper<Real>::load_arenas(const State<Real>& state, std::size_t owner, Scratch<Real>& mine) const {
-  const auto neighbours = state.grid.neighbours(owner);
-  const Real* bar[kNeighbours];
-  const Real* tilde[kNeighbours];
-  bool friction = false;
-  for (std::size_t n = 0; n < kNeighbours; ++n) {
-    const auto block = static_cast<std::size_t>(neighbours[n]);
-    bar[n] = tilde[n] = neighbours[n] < 0 ? nullptr : state.nodes.block(block);
-    if (neighbours[n] >= 0 && state.after_friction.has(block)) {
-      tilde[n] = state.after_friction.block(block);
-      friction = true;
-    }
-  }
-  const std::uint64_t rows = state.rows_touched[owner];
-  const bool two = friction && plan_.advection == Advection::kBeforeFriction;
-  const auto load_arena = plan_.kernels->stencil[plan_.transfer.stencil].load_arena;
-  load_arena(mine.arena.data(), rows, two ? bar : tilde);
-  if (two) load_arena(mine.kept_arena.data(), rows, tilde);
-  if (plan_.transfer.figures().keeps_velocity) {
-    for (std::size_t n = 0; n < kNeighbours; ++n) {
-      const auto block = static_cast<std::size_t>(neighbours[n]);
-      bar[n] = neighbours[n] < 0 ? nullptr : state.before_forces.block(block);
-    }
-    load_arena(mine.before_arena.data(), rows, bar);
-  }
-  return two;
-}
-
-template <class Real>
-void Stepper<Real>::gather(State<Real>& state, Real dt) {
+void Stepper<Real>::gather() {
   const PhaseTimer timer(profile_, Phase::kGather);
-  motion_.assign(state.grid.owners().size(), {});
-  if (rest_) stirs_.resize(state.grid.owners().size());
-  for_each_awake(state, [&](std::size_t owner) { motion_[owner] = gather_block(state, owner, dt); });
+  motion_.assign(sweep_.state().grid.owners().size(), {});
+  sweep_.over_moving([this](OccupiedBlock<Real>& block) { motion_[block.owner] = gather_block(block); });
 }
 
-namespace {
-
-/// Adds up the velocities of every eighth particle: enough for a mean.
 template <class Real>
-void sample(const Chunk<Real>& chunk, std::array<double, 3>& sums, double& samples) {
-  for (std::size_t p = 0; p < chunk.particles.count; p += 8) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      sums[axis] += static_cast<double>(chunk.particles.velocity[axis][p]);
-    samples += 1.0;
-  }
-}
-
-}  // namespace
-
-template <class Real>
-Motion<Real> Stepper<Real>::gather_block(State<Real>& state, std::size_t owner, Real dt) {
-  const bool two_velocities = load_arenas(state, owner, scratch());
+Motion<Real> Stepper<Real>::gather_block(OccupiedBlock<Real>& block) {
+  moving_.load(block);
   Motion<Real> motion;
-  std::array<double, 3> sums{};
-  double samples = 0.0;
-  const std::size_t next = std::min(owner + 1, state.grid.owners().size() - 1);
-  for_each_chunk(state, owner, next, dt, scratch(), [&](std::size_t k, Chunk<Real>& chunk) {
-    chunk.two_velocities = two_velocities;
+  block.for_each_chunk([&](std::size_t k, Chunk<Real>& chunk) {
     chunk.motion = motion;
     for (const auto& pass : plan_.gather[k]) pass.run(chunk);
     motion = chunk.motion;
-    if (rest_) sample(chunk, sums, samples);
   });
-  if (rest_) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      stirs_[owner].velocity[axis] = sums[axis] / std::max(samples, 1.0);
-  }
   return motion;
 }
 
+/// What the next step knows of this one.
 template <class Real>
-void Stepper<Real>::finish(State<Real>& state, Real dt) {
+void Stepper<Real>::finish(double dt) {
+  State<Real>& state = sweep_.state();
   Counters& counters = state.counters;
   Motion<Real> all;
   for (const Motion<Real>& motion : motion_) {  // largest and least: the order of blocks does not matter
@@ -308,34 +202,127 @@ void Stepper<Real>::finish(State<Real>& state, Real dt) {
   const bool outside = std::floor(all.lowest - shift) < Real(nodes.lowest_base) ||
                        std::floor(all.highest - shift) > Real(nodes.highest_base);
   counters.order_due = outside ? 1 : 0;
+  count_runs(counters);
+  if (!plan_.events.empty()) counters.unseen_motion += counters.max_speed * static_cast<double>(sweep_.dt());
+  counters.last_dt = dt;
+  active_.end_step(state, static_cast<double>(sweep_.dt()), motion_);
+  plan_.for_each_measure(state.tallies.data(), [&](const MeasurePass<Real>& measure, double* tallies) {
+    if (measure.after_step) measure.after_step(state, dt, tallies);
+  });
+}
+
+template <class Real>
+void Stepper<Real>::count_runs(Counters& counters) const {
   std::int64_t runs = 0;
   for (const std::size_t n : runs_) runs += static_cast<std::int64_t>(n);
   if (counters.runs_when_ordered < 0) counters.runs_when_ordered = runs;
   counters.runs_wasted += std::max<std::int64_t>(0, runs - counters.runs_when_ordered);
-  if (!plan_.events.empty()) counters.unseen_motion += counters.max_speed * static_cast<double>(dt);
-  if (rest_) {
-    for (const std::int32_t owner : rest_->attendance().awake) {
-      const auto k = static_cast<std::size_t>(owner);
-      stirs_[k].speed = std::sqrt(static_cast<double>(motion_[k].speed_squared));
-    }
-    rest_->settle(state, static_cast<double>(dt), stirs_);
-  }
-  ++counters.step;
 }
 
 template <class Real>
-std::size_t Stepper<Real>::bytes() const {
-  return order_.bytes() + (rest_ ? rest_->bytes() : 0) + (implicit_ ? implicit_->bytes() : 0) +
-         bounds_.capacity() * sizeof(VelocityBounds<Real>) + motion_.capacity() * sizeof(Motion<Real>) +
-         runs_.capacity() * sizeof(std::size_t) + suspects_.capacity() * sizeof(std::int32_t) +
-         found_.capacity() * sizeof(std::optional<Offender>);
+void Stepper<Real>::begin_frame(State<Real>& state) {
+  const CleanFloatingPoint clean;
+  plan_.for_each_measure(state.tallies.data(), [&](const MeasurePass<Real>& measure, double* tallies) {
+    if (measure.begin_frame) measure.begin_frame(state, tallies);
+  });
 }
 
 template <class Real>
-std::size_t Stepper<Real>::scratch_bytes() const {
-  const std::size_t per_thread =
-      sizeof(Real) * (3 * kArenaValues + kChunk * (kStrainComponents + 6 + kAffineComponents + 7));
-  return order_.scratch_bytes() + scratch_.size() * per_thread;
+Result<void> Stepper<Real>::change_particles(State<Real>& state, Moment moment) {
+  const auto changed = between_.carry_out_events(state, moment);
+  if (!changed) return changed.error();
+  unmeasured_ = unmeasured_ || *changed;
+  return {};
+}
+
+/// Whether there is memory for what has begun, the next step asks: the frame that ends is whole.
+template <class Real>
+Result<void> Stepper<Real>::end_frame(State<Real>& state) {
+  const CleanFloatingPoint clean;
+  auto changed = change_particles(state, Moment::kEndOfFrame);
+  if (changed && unmeasured_) between_.order_if_due(state);
+  return changed;
+}
+
+template <class Real>
+Result<void> Stepper<Real>::order_if_due(State<Real>& state) {
+  const bool stale = between_.order_if_due(state);
+  if (!stale && !unmeasured_) return {};
+  if (const auto error = outgrown(state)) return *error;
+  unmeasured_ = false;
+  if (stale) follow_topology(state);
+  return {};
+}
+
+template <class Real>
+void Stepper<Real>::follow_topology(State<Real>& state) {
+  between_.follow_topology(state);
+  room_ = {state.particles(), state.grid.size()};
+  if (begun_with_.blocks == 0) begun_with_ = room_;
+}
+
+template <class Real>
+Result<void> Stepper<Real>::follow(State<Real>& state) {
+  active_.forget();
+  if (implicit_) implicit_->forget();
+  if (const auto error = outgrown(state)) return *error;
+  follow_topology(state);
+  reserve(state);
+  return {};
+}
+
+template <class Real>
+void Stepper<Real>::reserve(State<Real>& state) {
+  const std::size_t owners = state.grid.owners().size();
+  motion_.reserve(owners);
+  runs_.reserve(owners);
+  acceptance_.begin(state.grid.size());
+  active_.refresh(state);
+  sweep_.begin(state, Real(0));
+  if (implicit_) implicit_->reserve();
+  unmeasured_ = true;
+}
+
+template <class Real>
+MemoryUse Stepper<Real>::memory(const State<Real>& state) const {
+  MemoryUse use;
+  use.particle_bytes = state.particle_bytes();
+  use.order_bytes = between_.bytes() + active_.bytes() + acceptance_.bytes() + sweep_.bytes() +
+                    motion_.capacity() * sizeof(Motion<Real>) + runs_.capacity() * sizeof(std::size_t);
+  use.scratch_bytes = between_.scratch_bytes() + sweep_.scratch_bytes();
+  use.grid_bytes = state.grid_bytes();
+  use.solver_bytes = implicit_ ? implicit_->bytes(state) : 0;
+  use.table_bytes = plan_.tables.bytes();
+  use.growing_bytes = use.grid_bytes + use.table_bytes + (implicit_ ? implicit_->block_bytes(state) : 0);
+  use.blocks = state.grid.size();
+  use.active_nodes = state.grid.active_nodes();
+  return use;
+}
+
+template <class Real>
+std::optional<Error> Stepper<Real>::outgrown(const State<Real>& state) const {
+  const MemoryBound& bound = plan_.memory;
+  const MemoryUse use = memory(state);
+  const auto growth = [](std::size_t now, std::size_t room) {
+    return room == 0 ? 0.0 : std::max(0.0, static_cast<double>(now) / static_cast<double>(room) - 1.0);
+  };
+  const std::size_t of_particles = use.solver_bytes - (implicit_ ? implicit_->block_bytes(state) : 0);
+  const double need = static_cast<double>(use.total()) +
+                      growth(use.blocks, room_.blocks) * static_cast<double>(use.growing_bytes) +
+                      growth(state.particles(), room_.particles) * static_cast<double>(of_particles) +
+                      bound.writing(state.particles(), use.blocks);
+  if (need <= bound.limit) return std::nullopt;
+  const auto count = [](std::size_t begun, std::size_t now, const char* of) {
+    const std::string text = std::to_string(now) + of;
+    return begun == 0 || begun == now ? text : text + " (" + std::to_string(begun) + " at the start)";
+  };
+  return Error{ErrorKind::kMemory,
+               "needs about " + bytes_text(need) + " for " +
+                   count(begun_with_.particles, state.particles(), " particles") + " and " +
+                   count(begun_with_.blocks, use.blocks, " blocks of nodes") + ", and " +
+                   bytes_text(bound.limit) +
+                   " may be used; a larger limit, a coarser grid.spacing, or a sink for what flies off helps",
+               ""};
 }
 
 template class Stepper<float>;

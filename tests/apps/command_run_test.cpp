@@ -317,5 +317,44 @@ TEST_F(CommandRun, OlderRunInTheFolder_IsNotResumed) {
   EXPECT_THAT(more.err, HasSubstr("after frame 2"));
 }
 
+/// Two halves of a box that spin apart: the grid grows many times over.
+constexpr const char* kBurst = R"json({"repose": 1, "name": "burst", "grid": {"spacing": 0.01},
+  "time": {"frames_per_second": 20, "frames": 5}, "output": {"vdb": false},
+  "gravity": {"acceleration": [0, 0, 0]},
+  "materials": {"sand": {"type": "drucker_prager"}},
+  "bodies": [
+    {"name": "up", "material": "sand", "velocity": [0, 4, 1], "angular_velocity": [0, 30, 0],
+     "shape": {"type": "box", "lower": [0, 0.11, 0], "upper": [0.2, 0.2, 0.2]}},
+    {"name": "down", "material": "sand", "velocity": [1, -4, 0], "angular_velocity": [0, 30, 0],
+     "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.2, 0.09, 0.2]}}]})json";
+
+/// MB that a line of the forecast names.
+double forecast(const std::string& plan, const std::string& line) {
+  const std::size_t at = plan.find("\n    " + line);
+  EXPECT_NE(at, std::string::npos) << plan;
+  return at == std::string::npos ? 0.0 : std::stod(plan.substr(at + 5 + line.size()));
+}
+
+TEST_F(CommandRun, ThatOutgrowsItsMemory_EndsWith78AndGoesOnWithMore) {
+  const std::string scene = write("burst.json", kBurst);
+  const Finished plan = repose({"plan", scene, "--threads", "2"});
+  ASSERT_EQ(plan.code, 0);
+  // Room for what it begins with and some more, on any machine.
+  const double process = forecast(plan.out, "  process"), running = forecast(plan.out, "running");
+  const std::string memory = std::to_string(static_cast<int>(process + 1.2 * (running - process))) + "MB";
+  ASSERT_EQ(repose({"run", scene, "--out", path("free"), "--threads", "2"}).code, 0);
+  const Finished bound = repose({"run", scene, "--out", path("bound"), "--threads", "2", "--memory", memory});
+  EXPECT_EQ(bound.code, 78);
+  EXPECT_THAT(bound.err, HasSubstr(" at the start)"));
+  EXPECT_THAT(bound.err, HasSubstr("from which --resume goes on"));
+  ASSERT_EQ(repose({"run", scene, "--out", path("bound"), "--threads", "2", "--resume"}).code, 0);
+  EXPECT_EQ(hash_of_last_frame(path("bound")), hash_of_last_frame(path("free")));
+}
+
+TEST_F(CommandRun, WithLessMemoryThanTheProgram_IsRefused) {
+  EXPECT_THAT(refusal(64, {"run", tiny_scene(), "--out", path("out"), "--memory", "1MB"}),
+              HasSubstr("less than the program itself takes"));
+}
+
 }  // namespace
 }  // namespace repose

@@ -61,7 +61,7 @@ std::string made_of(const Scene& scene) {
   for (const auto& [where, pass] : simulation->passes()) text += "; " + pass.name;
   const auto compiled = compile_scene<float>(scene, {});
   EXPECT_TRUE(compiled);
-  if (compiled->plan.rest) text += "; rest";
+  if (compiled->plan.sleep) text += "; sleep";
   return text;
 }
 

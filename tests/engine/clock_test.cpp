@@ -1,5 +1,5 @@
 // Repose tests: times of frames are the integral of the time scale, key by key, and a function of their number.
-#include "engine/scene/clock.h"
+#include "engine/plan/frame_clock.h"
 
 #include <gtest/gtest.h>
 
@@ -35,6 +35,25 @@ TEST(Clock, SeveralKeys_IsTheAreaUnderThem) {
     EXPECT_GT(clock.length(frame), 0.0);
     EXPECT_EQ(clock.length(frame), clock.at(frame + 1) - clock.at(frame));
   }
+}
+
+TEST(FrameClock, StepsThatFillAFrame_EndOnItExactly) {
+  const FrameClock clock(Clock(24.0, {}));
+  Counters counters;
+  for (int frame = 0; frame < 3; ++frame) {
+    int steps = 0;
+    while (!clock.frame_is_full(counters)) {
+      clock.advance(counters, std::min(0.3 / 24.0, clock.remaining(counters)));
+      ++steps;
+    }
+    EXPECT_EQ(steps, 4);
+    EXPECT_EQ(counters.time, static_cast<double>(frame) / 24.0 + 1.0 / 24.0);
+    clock.end_frame(counters);
+    EXPECT_EQ(counters.time, static_cast<double>(frame + 1) / 24.0);
+    EXPECT_EQ(counters.time_in_frame, 0.0);
+  }
+  EXPECT_EQ(counters.frame, 3);
+  EXPECT_EQ(counters.step, 12);
 }
 
 }  // namespace

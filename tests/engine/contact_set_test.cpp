@@ -19,26 +19,25 @@ constexpr std::size_t kAt = kNode * kNodeValues + 1;
 
 /// A node of kMass against a wall that moves along itself.
 struct OneNode {
-  explicit OneNode(Vec3 normal = Vec3(0.0, 1.0, 0.0),
-                   typename Hold<double>::Kind kind = Hold<double>::Kind::kAgainst)
-      : OneNode(std::vector<Vec3>{normal}, kind) {}
+  explicit OneNode(Vec3 normal = Vec3(0.0, 1.0, 0.0), Contact contact = Contact::kSeparating)
+      : OneNode(std::vector<Vec3>{normal}, contact) {}
   /// In a corner of several that move alike.
-  explicit OneNode(const std::vector<Vec3>& normals,
-                   typename Hold<double>::Kind kind = Hold<double>::Kind::kAgainst) {
+  explicit OneNode(const std::vector<Vec3>& normals, Contact contact = Contact::kSeparating) {
     contacts.clear(1);
-    std::vector<Hold<double>> holds;
+    std::vector<Constraint<double>> constraints;
     for (const Vec3& any : normals) {
       const Vec3 normal = any.normalized();
-      Hold<double> hold;
+      Constraint<double> hold;
       hold.node = kNode;
-      hold.kind = kind;
+      hold.contact = contact;
       std::copy_n(normal.data(), 3, hold.normal);
       std::copy_n(wall.data(), 3, hold.velocity);
       hold.bound = normal.dot(wall);
       hold.friction = kFriction;
-      holds.push_back(hold);
+      constraints.push_back(hold);
     }
-    contacts.set_block(0, holds);
+    const double none[kBlockValues] = {};
+    contacts.set_block(0, constraints, none);
     masses[kNode * kNodeValues] = kMass;
     set_velocity(wall);
   }
@@ -168,6 +167,40 @@ TEST(ContactSet, Friction_LiesInCoulombsConeAndOpposesSlip) {
   EXPECT_LT(sticking, 180);
 }
 
+/// Keeps what a contact did to a node.
+struct Kept {
+  std::vector<std::pair<std::size_t, Vec3>>* changes;
+  Vec3 start = Vec3::Zero();
+  void before(const double* v) { start = Eigen::Map<const Vec3>(v); }
+  void after(std::size_t solid, const double*, const double* v) {
+    changes->emplace_back(solid, Eigen::Map<const Vec3>(v) - start);
+  }
+};
+
+// After the solve: its impulse is taken back, and the law of explicit steps gives it.
+TEST(ContactSet, WhatTheSolveFound_ActsAsInAnExplicitStep) {
+  OneNode node;
+  const Vec3 falls = node.wall + Vec3(0.02, 0.0, 0.0), push(0.0, 0.3, 0.0);
+  node.contacts.take_up(0, node.velocities);
+  node.set_velocity(node.wall - Vec3(0.0, 1.0, 0.0));
+  node.contacts.take_up(0, node.velocities);
+  node.bear(falls, push);  // sticks: it bears the push, and friction what is left along the wall
+  const Vec3 reaction = node.reaction();
+  ASSERT_GT(reaction.y(), 0.0);
+  double nodes[kBlockValues] = {};
+  nodes[kNode * kNodeValues] = kMass;
+  std::copy_n(falls.data(), 3, nodes + kAt);
+  std::vector<std::pair<std::size_t, Vec3>> changes;
+  node.contacts.act(0, 1e-2, nodes, nodes, nodes, [&](std::size_t, double) { return Kept{&changes}; });
+  const Vec3 after = Eigen::Map<const Vec3>(nodes + kAt), free = falls - reaction / kMass;
+  EXPECT_NEAR(after.y(), 0.0, 1e-14) << "the wall does not move along its normal";
+  EXPECT_NEAR((free - node.wall).y(), -reaction.y() / kMass, 1e-15);
+  // Coulomb: along the wall it keeps what exceeds the bound, here nothing or its slip less the bound.
+  const Vec3 slip = free - node.wall - Vec3(0.0, (free - node.wall).y(), 0.0);
+  const double bound = kFriction * reaction.y() / kMass;
+  EXPECT_NEAR((after - node.wall).norm(), std::max(0.0, slip.norm() - bound), 1e-12);
+}
+
 // A node at rest bears what it is asked to, and counts for what is beyond.
 TEST(ContactSet, FrictionAtRest_BearsWhatItCan) {
   OneNode node;
@@ -193,7 +226,7 @@ TEST(ContactSet, FrictionOfWhatIsPulled_IsNone) {
 // At the same impulse, which the tangent leaves as it is.
 TEST(ContactSet, TangentOfFriction_IsItsDerivative) {
   std::mt19937 engine(6);
-  OneNode node(Vec3(0.3, 1.0, -0.2), Hold<double>::Kind::kAlong);
+  OneNode node(Vec3(0.3, 1.0, -0.2), Contact::kSlip);
   const Vec3 normal = Vec3(0.3, 1.0, -0.2).normalized(), push = 3.0 * normal;
   for (int k = 0; k < 100; ++k) {
     Vec3 slip = along_floor(engine);
@@ -230,7 +263,7 @@ TEST(ContactSet, TangentOfFriction_IsItsDerivative) {
 // By itself the node would go on by (m u - r) / m: friction stops it where that is less than the impulse it
 // has.
 TEST(ContactSet, NodeThatFrictionWouldStop_IsStopped) {
-  OneNode node(Vec3(0.0, 1.0, 0.0), Hold<double>::Kind::kAlong);
+  OneNode node(Vec3(0.0, 1.0, 0.0), Contact::kSlip);
   constexpr double kPush = 3.0, kBound = kFriction * kPush, kSpeed = 0.1;
   const Vec3 slip(kSpeed, 0.0, 0.0);
   for (const double load : {-0.9, 0.0, 0.9, 1.1, 3.0}) {  // of B
@@ -243,7 +276,7 @@ TEST(ContactSet, NodeThatFrictionWouldStop_IsStopped) {
 }
 
 TEST(ContactSet, NodeThatWouldSlipBack_StopsAtTheWallsVelocity) {
-  OneNode node(Vec3(0.0, 1.0, 0.0), Hold<double>::Kind::kAlong);
+  OneNode node(Vec3(0.0, 1.0, 0.0), Contact::kSlip);
   node.bear(node.wall + Vec3(0.1, 0.0, 0.0), Vec3(0.0, 3.0, 0.0));
   node.contacts.linearize(0, node.masses);
   const auto after = [&](const Vec3& to) {

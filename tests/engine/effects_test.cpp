@@ -54,7 +54,7 @@ void expect_nothing_asked_for(const Scene& scene) {
   EXPECT_THAT(plan.measures, IsEmpty());
   EXPECT_THAT(plan.speeds, IsEmpty());
   EXPECT_THAT(plan.disturbances, IsEmpty());
-  EXPECT_FALSE(plan.rest);
+  EXPECT_FALSE(plan.sleep);
   expect_core(plan.order);
   expect_core(plan.nodes);
   EXPECT_EQ(plan.nodes.size(), 1u) << "p/m";

@@ -36,7 +36,9 @@ class Balance {
     // One step of the scene's own fills the nodes.
     Stepper<double> stepper(compiled_.plan, 1);
     EXPECT_TRUE(stepper.step(state(), std::numeric_limits<double>::infinity()).accepted);
-    sweep_.begin(state(), kStep);
+    blocks_.begin(state(), kStep);
+    active_.begin_step(state(), 0.0);
+    sweep_.begin();
     sweep_.follow_topology();
     system_.follow_topology();
     balance_.follow_topology();
@@ -96,14 +98,16 @@ class Balance {
     EXPECT_TRUE(scene) << (scene ? "" : scene.error().text());
     auto compiled = compile_scene<double>(*scene, {});
     EXPECT_TRUE(compiled) << (compiled ? "" : compiled.error().text());
+    ParticleSweep<double>::claim_scratch(compiled->plan.scratch);
     return std::move(*compiled);
   }
 
   std::mt19937 engine_{11};
   CompiledScene<double> compiled_;
   Threads threads_{1};
-  std::vector<Scratch<double>> scratch_ = std::vector<Scratch<double>>(1);
-  BlockSweep<double> sweep_{compiled_.plan, threads_, scratch_};
+  ActiveBlocks<double> active_{compiled_.plan};
+  BlockSweep<double> blocks_{compiled_.plan, threads_, active_.set()};
+  ParticleSweep<double> sweep_{blocks_};
   ContactSet<double> contacts_;
   TangentSystem<double> system_{sweep_, contacts_, Preconditioner::kMass};
   MomentumBalance<double> balance_{*compiled_.plan.implicit, sweep_, contacts_, system_};

@@ -37,7 +37,7 @@ State<Real> state_of(const std::vector<std::vector<std::uint32_t>>& ids) {
     set.material = static_cast<int>(k);
     set.particle_mass = 1.0 + static_cast<double>(k);
     set.particle_volume = 0.01;
-    if (k == 1) set.extra.push_back({kVolumeGained, {}});
+    if (k == 1) set.extra.push_back({kVolumeGained.kName, {}});
     set.allocate(ids[k].size());
     auto& set_cells = cells.emplace_back();
     for (std::size_t p = 0; p < ids[k].size(); ++p) {
@@ -162,7 +162,7 @@ TEST(Points, Age_IsTheTimeSinceBirth) {
   state.counters.time = 2.5;
   EXPECT_TRUE(std::isnan(attribute(points_of(state, {{kAge}, false}), "age").values[0])) << "nobody remembers";
   for (auto& set : state.sets) {
-    set.extra.push_back({kBirth, {}});
+    set.extra.push_back({kBirth.kName, {}});
     set.extra.back().values.resize(set.count);
     for (std::size_t p = 0; p < set.count; ++p) set.extra.back().values[p] = 0.5 * set.id[p];
   }

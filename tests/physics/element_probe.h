@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ class Element {
     auto compiled = compile_scene<double>(scene_, {});
     if (!compiled) throw std::runtime_error(compiled.error().text());
     state_ = std::move(compiled->state);
+    scratch_.emplace(compiled->plan.scratch);
     for (auto& pass : compiled->plan.gather[0]) {
       const bool before = pass.description.name == "gather" || pass.description.name == "advance";
       if (!before) passes_.push_back(std::move(pass));
@@ -56,7 +58,7 @@ class Element {
       Chunk<double> chunk{set,
                           first,
                           set.span(first, std::min(kChunk, set.count - first)),
-                          scratch_,
+                          *scratch_,
                           dt,
                           state_.spacing,
                           state_.counters.time,
@@ -95,7 +97,7 @@ class Element {
     const auto& set = state_.sets[0];
     std::size_t owner = 0;
     while (set.begin[owner + 1] <= p) ++owner;
-    const Index3 block = state_.grid.blocks()[static_cast<std::size_t>(state_.grid.owners()[owner])];
+    const Index3 block = state_.grid.coordinates_of_owner(owner);
     return state_.world(block, {set.position[0][p], set.position[1][p], set.position[2][p]});
   }
   std::size_t count() const { return state_.sets[0].count; }
@@ -106,7 +108,7 @@ class Element {
   State<double> state_;
   std::vector<ParticlePass<double>> passes_;
   std::vector<double> gradient_[9];
-  Scratch<double> scratch_;
+  std::optional<Scratch<double>> scratch_;
 };
 
 }  // namespace repose

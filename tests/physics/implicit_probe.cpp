@@ -75,7 +75,7 @@ double explicit_rise(const std::string& text, std::vector<std::string> overrides
   State<float> state = std::move(compiled->state);
   Stepper<float> stepper(std::move(compiled->plan), 1);
   const auto figures = [&] { return diagnose(scene, compiled->solids, state, stepper.threads()); };
-  stepper.order_if_due(state);
+  if (auto ordered = stepper.order_if_due(state); !ordered) throw std::runtime_error(ordered.error().text());
   const Diagnostics start = figures();
   double rise = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < steps; ++k) {

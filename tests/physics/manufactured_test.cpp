@@ -142,24 +142,24 @@ template <class Real>
 void push_by(const Force& force, const Scene& scene, CompiledScene<Real>& compiled) {
   for (auto& pass : compiled.plan.scatter[0]) {
     if (pass.description.effect != Manufactured::kName) continue;
-    pass.run = [force, solution = scene.effect<Manufactured>().list[0],
-                e = scene.materials[0].elasticity()](Chunk<Real>& chunk) {
-      for (std::size_t p = 0; p < chunk.particles.count; ++p) {
-        Vec3 X;
-        for (int i = 0; i < 3; ++i)
-          X[i] = double(chunk.set.extra[static_cast<std::size_t>(i)].values[chunk.first + p]);
-        const Vec3 b = force(solution, X, chunk.time, e);
-        for (std::size_t i = 0; i < 3; ++i) {
-          chunk.scratch.velocity[i * kChunk + p] = static_cast<Real>(double(chunk.particles.velocity[i][p]) +
-                                                                     double(chunk.dt) * b[static_cast<int>(i)]);
-        }
-      }
-      for (std::size_t i = 0; i < 3; ++i)
-        chunk.particles.velocity[i] = chunk.scratch.velocity.data() + i * kChunk;
-    };
+    pass = PassMaker<Real>(compiled.plan.scratch, compiled.plan.tables, &compiled.state.sets[0])
+               .over_particles(
+                   {pass.description.name, pass.description.reason},
+                   reads(kToldVelocity, Manufactured::kX, Manufactured::kY, Manufactured::kZ),
+                   writes(kToldVelocity),
+                   [force, solution = scene.effect<Manufactured>().list[0],
+                    e = scene.materials[0].elasticity()](const auto& at) {
+                     const auto told = at.write(kToldVelocity);
+                     for (std::size_t p = 0; p < at.count(); ++p) {
+                       const Vec3 X(double(at.read(Manufactured::kX)[p]), double(at.read(Manufactured::kY)[p]),
+                                    double(at.read(Manufactured::kZ)[p]));
+                       const Vec3 b = double(at.dt()) * force(solution, X, at.time(), e);
+                       for (std::size_t i = 0; i < 3; ++i)
+                         told[i][p] = static_cast<Real>(double(told[i][p]) + b[static_cast<int>(i)]);
+                     }
+                   });
   }
 }
-
 struct Clouds {
   PointCloud start, end;
 };
@@ -311,7 +311,7 @@ TEST(ManufacturedBox, StepThatIsRefused_LeavesParticles) {
   compiled->plan.limits = {10.0, 1e6, 1e6, 1e6, 1e6, compiled->plan.limits.sets};
   Stepper<double> stepper(std::move(compiled->plan), 1);
   compiled->state.counters.time = 0.1;
-  stepper.order_if_due(compiled->state);
+  EXPECT_TRUE(stepper.order_if_due(compiled->state));
   const std::uint64_t before = state_hash(compiled->state);
   EXPECT_FALSE(stepper.step(compiled->state, std::numeric_limits<double>::infinity()).accepted);
   EXPECT_EQ(state_hash(compiled->state), before);

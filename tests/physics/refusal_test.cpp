@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "engine/plan/frame_clock.h"
 #include "engine/state/state_hash.h"
 #include "tests/physics/physics_probe.h"
 
@@ -68,12 +69,16 @@ Forced force(int sound_steps, double max_step) {
   constexpr double kNoFrame = std::numeric_limits<double>::infinity();
   Forced result{std::move(compiled->state), {}, 0};
   Stepper<double> sound(compiled->plan, 2);
-  for (int k = 0; k < sound_steps; ++k) EXPECT_TRUE(sound.step(result.state, kNoFrame).accepted);
+  for (int k = 0; k < sound_steps; ++k) {
+    const StepReport report = sound.step(result.state, kNoFrame);
+    EXPECT_TRUE(report.accepted);
+    FrameClock::advance_freely(result.state.counters, report.dt);
+  }
   StepPlan<double> plan = compiled->plan;
   plan.limits.cfl = plan.limits.sound = plan.limits.isolated = plan.limits.strain = 1e6;
   plan.limits.max_step = max_step;
   Stepper<double> forced(std::move(plan), 2);
-  forced.order_if_due(result.state);
+  EXPECT_TRUE(forced.order_if_due(result.state));
   result.before = state_hash(result.state);
   result.report = forced.step(result.state, kNoFrame);
   return result;

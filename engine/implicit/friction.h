@@ -1,5 +1,5 @@
-// Repose: Coulomb's law of friction at a node, at the end of an implicit step. Along its walls the node is
-// pulled back by
+// Repose: Coulomb's law of friction (engine/plan/contact_law.h) at a node, as a solve for the end of a step
+// meets it. Along its walls the node is pulled back by
 //   J_t = -B u / max(|u|, u_s),   B = mu J_n,   u_s = kGive B / m,
 // with u its velocity against the wall and J_n the impulse that holds it. It drives nothing, whatever J_n is,
 // so that no step is too long for it; friction that follows the solve (Klar et al. 2016, section 8.1) would
@@ -7,9 +7,8 @@
 // change is left out of the tangent.
 #pragma once
 
-#include <algorithm>
-
 #include "engine/base/vector.h"
+#include "engine/plan/contact_law.h"
 
 namespace repose {
 
@@ -30,7 +29,7 @@ struct Friction {
     slips = mass * speed > kGive * bound;
     stiffness = slips ? bound / speed : mass / kGive;
     if (slips) way = u / speed;
-    impulse = slips ? Vector3(-bound * way) : Vector3(asked * (load > bound ? bound / load : Real(1)));
+    impulse = slips ? Vector3(-bound * way) : Vector3(share_borne(load, bound) * asked);
   }
 
   /// -dJ_t of a change of u

@@ -1,4 +1,4 @@
-#include "engine/scene/clock.h"
+#include "engine/plan/clock.h"
 
 #include <algorithm>
 

@@ -1,13 +1,13 @@
 // Repose: what a solid does to the velocity of one node (Klar et al. 2016, sections 8 and 8.1): first the
 // constraint, v* -> v-bar, then friction, v-bar -> v-tilde. Both act on the velocity relative to the solid's
 // own at the node, which Klar omits; `wall` is null where the solid rests: then nothing is rounded, and
-// since the laws are inlined where that is known, nothing costs.
+// since the laws are inlined where that is known, nothing costs. Explicit and implicit steps end with them.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/effect/solid.h"
+#include "engine/plan/constraint.h"
 
 namespace repose {
 
@@ -17,6 +17,11 @@ struct NodeContact {
   Real distance;  ///< m, less the node's reach
   Real normal[3];
 };
+
+template <class Real>
+NodeContact<Real> beside(const Constraint<Real>& constraint) {
+  return {constraint.distance, {constraint.normal[0], constraint.normal[1], constraint.normal[2]}};
+}
 
 template <class Real>
 Real dot(const Real* a, const Real* b) {
@@ -54,7 +59,13 @@ template <class Real>
   return impulse;
 }
 
-/// Coulomb: takes at most `bound` (m/s) from the motion along the surface.
+/// Coulomb: of a load along a surface, friction of at most `bound` bears this share.
+template <class Real>
+[[gnu::always_inline]] inline Real share_borne(Real load, Real bound) {
+  return load <= bound ? Real(1) : bound / load;
+}
+
+/// Takes at most `bound` (m/s) from the motion along the surface.
 template <class Real>
 [[gnu::always_inline]] inline void rub(const Real* n, const Real* wall, Real bound, Real* v) {
   Real slip[3];
@@ -63,7 +74,7 @@ template <class Real>
   Real tangent[3];
   for (int axis = 0; axis < 3; ++axis) tangent[axis] = slip[axis] - along * n[axis];
   const Real speed = std::sqrt(dot(tangent, tangent));
-  const Real kept = speed <= bound ? Real(0) : Real(1) - bound / speed;
+  const Real kept = Real(1) - share_borne(speed, bound);
   for (int axis = 0; axis < 3; ++axis) {
     v[axis] = along * n[axis] + kept * tangent[axis];
     if (wall != nullptr) v[axis] += wall[axis];

@@ -3,10 +3,12 @@
 // nothing; a try of a step that is refused is overwritten by the next one.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "engine/base/vector.h"
+#include "engine/plan/handle.h"
 
 namespace repose {
 
@@ -28,6 +30,35 @@ struct ContactSums {
   }
 };
 
+/// Why a record is a type: where nothing is recorded it must not cost.
+struct NoContactRecorder {
+  void before(const void*) {}
+  void after(std::size_t, const void*, const void*) {}
+};
+
+/// Writes what changes the velocity of one node into the sums of its block.
+struct ContactRecorder {
+  ContactSums* sums;
+  double mass;  ///< kg, of the node
+  Vec3 x;       ///< m, where it is
+  Vec3 start = Vec3::Zero();
+
+  template <class Real>
+  static Vec3 vector(const Real* v) {
+    return {double(v[0]), double(v[1]), double(v[2])};
+  }
+  template <class Real>
+  void before(const Real* v) {
+    start = vector(v);
+  }
+  /// `wall` is null where the solid rests.
+  template <class Real>
+  void after(std::size_t solid, const Real* wall, const Real* v) {
+    const Vec3 moves = wall == nullptr ? Vec3(0, 0, 0) : vector(wall);
+    sums[solid].add(x, mass * (vector(v) - start), moves);
+  }
+};
+
 class ContactLog {
  public:
   explicit ContactLog(std::size_t solids) : solids_(solids) {}
@@ -43,9 +74,18 @@ class ContactLog {
     sums_.assign(static_cast<std::size_t>(rows) * solids_, ContactSums());
   }
 
-  /// One entry per solid, of a block that has a row.
-  ContactSums* row(std::size_t block) { return sums_.data() + static_cast<std::size_t>(row_[block]) * solids_; }
+  /// Whether anything near a block can be recorded.
+  bool has(std::size_t block) const { return row_[block] >= 0; }
+  /// The sums of a block that has some, one per solid, at zero.
+  ContactSums* begin(std::size_t block) {
+    ContactSums* const row = sums_.data() + static_cast<std::size_t>(row_[block]) * solids_;
+    std::fill_n(row, solids_, ContactSums());
+    return row;
+  }
   std::size_t solids() const { return solids_; }
+  std::size_t bytes() const {
+    return row_.capacity() * sizeof(std::int32_t) + sums_.capacity() * sizeof(ContactSums);
+  }
 
   /// Of all blocks.
   ContactSums total(std::size_t solid) const {
@@ -59,5 +99,9 @@ class ContactLog {
   std::vector<std::int32_t> row_;  // per block; -1 where no solid is near
   std::vector<ContactSums> sums_;  // rows in the order of blocks
 };
+
+template <class>
+using ContactLogOf = ContactLog;
+inline constexpr TableHandle<"contact log", ContactLogOf> kContactLog;
 
 }  // namespace repose

@@ -1,0 +1,266 @@
+#include "engine/plan/transfer_passes.h"
+
+#include <algorithm>
+
+namespace repose {
+namespace {
+
+/// What kernels of materials take. They have one struct for those that read the strain and those that write it.
+template <class Real, class Access>
+MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, const Access& at) {
+  MaterialInput<Real> in{};
+  in.constants = material.constants.get();
+  in.dt = at.dt();
+  in.count = at.count();
+  in.ahead = at.ahead();
+  return in;
+}
+template <class Strain, class Real>
+void take_strain(const Strain& strain, MaterialInput<Real>& in) {
+  for (std::size_t k = 0; k < strain.size(); ++k) in.strain[k] = const_cast<Real*>(strain[k]);
+}
+
+}  // namespace
+
+template <class Real>
+Lattice<Real> make_lattice(const State<Real>& state, const TransferChoice& transfer) {
+  Lattice<Real> lattice{};
+  lattice.spacing = static_cast<Real>(state.spacing);
+  lattice.flat_axis = state.topology.flat_axis;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool flat = axis == state.topology.flat_axis;
+    lattice.axis_scale[axis] = flat ? Real(0) : static_cast<Real>(transfer.nodes().inverse_d / state.spacing);
+  }
+  return lattice;
+}
+
+template <class Real>
+void add_stress(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
+  passes.add({"stress"}, reads(kHenckyStrain), writes(kKirchhoffStress), [material](const auto& at) {
+    MaterialInput<Real> in = material_input(material, at);
+    take_strain(at.read(kHenckyStrain), in);
+    std::copy_n(at.write(kKirchhoffStress).begin(), kStrainComponents, in.stress);
+    material.kernels.stress(in);
+  });
+}
+
+template <class Real>
+void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPasses<Real> passes) {
+  const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].scatter;
+  const bool keeps_velocity = plan.transfer.figures().keeps_velocity, pushed = passes.provides(kToldVelocity);
+  const bool forces = !plan.implicit;  // stress is one; a solve finds its own
+  const auto stress = when(forces, kKirchhoffStress);
+  const auto no_stress = when(!forces, kNoStress);
+  const auto told = when(pushed, kToldVelocity);
+  const auto velocity = when(keeps_velocity || !pushed, kParticleVelocity);
+  const auto affine = when(plan.transfer.keeps_affine(), kAffine);
+  const auto before = when(keeps_velocity, kMomentumBeforeForces);
+  passes.add({"scatter"}, reads(kPosition, velocity, told, affine, stress),
+             writes(kNodeMomentum, before, no_stress, kTouched),
+             [=, kept_stretching = static_cast<Real>(plan.transfer.kept_stretching)](const auto& at) {
+               ScatterInput<Real> in{};
+               in.particles = at.span();
+               if (pushed) {
+                 const auto v = at.read(kToldVelocity);
+                 for (std::size_t axis = 0; axis < 3; ++axis)
+                   in.particles.velocity[axis] = const_cast<Real*>(v[axis]);
+               }
+               std::copy_n((forces ? at.read(kKirchhoffStress) : at.read(kNoStress)).begin(), kStrainComponents,
+                           in.stress);
+               in.mass = static_cast<Real>(at.mass());
+               in.impulse_volume =
+                   forces ? static_cast<Real>(static_cast<double>(at.dt()) * at.volume()) : Real(0);
+               in.kept_stretching = kept_stretching;
+               in.lattice = lattice;
+               auto& touched = at.write(kTouched);
+               touched.runs += kernel(in, at.write(kNodeMomentum), touched.rows);
+               if (!keeps_velocity) return;
+               // What particles keep their velocity against must have felt no force: neither stress nor a push.
+               in.particles = at.span();
+               in.impulse_volume = Real(0);
+               kernel(in, at.write(kMomentumBeforeForces), touched.rows);
+             });
+}
+
+namespace {
+
+/// What gathers the velocities of nodes around a block for its particles.
+template <class Real>
+struct Gather {
+  TransferChoice choice;
+  Lattice<Real> lattice;
+  void (*kernel)(const GatherInput<Real>&, const Real*);
+  void (*interpolate)(const ParticleSpan<Real>&, int, const Real*, Real* const[3]);
+  bool keeps_velocity;
+
+  template <class Access>
+  GatherInput<Real> input(const Access& at) const {
+    GatherInput<Real> in{};
+    in.particles = at.span();
+    in.lattice = lattice;
+    in.kept_velocity = static_cast<Real>(choice.kept_velocity);
+    if (keeps_velocity) {
+      const auto before = at.write(kBefore);
+      interpolate(in.particles, lattice.flat_axis, at.read(kVelocityBeforeForces), before.data());
+      std::copy_n(before.begin(), 3, in.before);
+    }
+    return in;
+  }
+
+  /// What particles keep comes out in their own channels.
+  template <class Access>
+  static void keep(const Access& at, GatherInput<Real>& in) {
+    std::copy_n(at.write(kParticleVelocity).begin(), 3, in.velocity);
+    std::copy_n(at.write(kAffine).begin(), kAffineComponents, in.affine);
+  }
+
+  /// What moves a particle is what it keeps, unless the transfer or friction tell two velocities.
+  template <class Access>
+  void operator()(const Access& at) const {
+    GatherInput<Real> in = input(at);
+    const bool two = at.two_velocities();
+    if (!two) keep(at, in);
+    const bool apart = two || keeps_velocity, gradient_apart = two || choice.separate_gradient();
+    if (apart) std::copy_n(at.write(kVelocityRoom).begin(), 3, in.moving);
+    if (gradient_apart) std::copy_n(at.write(kGradientRoom).begin(), kAffineComponents, in.gradient);
+    kernel(in, at.read(kNodeVelocity));
+    at.put(kMovingVelocity, apart ? in.moving : in.velocity);
+    at.put(kGradient, gradient_apart ? in.gradient : in.affine);
+    if (!two) return;
+    keep(at, in);
+    std::fill_n(in.moving, 3, nullptr);
+    std::fill_n(in.gradient, kAffineComponents, nullptr);
+    kernel(in, at.read(kVTilde));
+  }
+};
+
+}  // namespace
+
+template <class Real>
+void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, bool friction,
+                SetPasses<Real> passes) {
+  const TransferChoice& choice = plan.transfer;
+  const bool keeps_velocity = choice.figures().keeps_velocity;
+  const Gather<Real> gather{choice, lattice, plan.kernels->transfer[choice.stencil][choice.transfer].gather,
+                            plan.kernels->stencil[choice.stencil].interpolate, keeps_velocity};
+  const auto velocity = when(keeps_velocity, kParticleVelocity);
+  const auto before = when(keeps_velocity, kVelocityBeforeForces);
+  const auto tilde = when(friction, kVTilde);
+  const auto affine = when(choice.keeps_affine(), kAffine);
+  const auto at_particles = when(keeps_velocity, kBefore);
+  passes.add(
+      {"gather"}, reads(kPosition, velocity, kNodeVelocity, tilde, before),
+      writes(kParticleVelocity, affine, kMovingVelocity, kGradient, at_particles, kVelocityRoom, kGradientRoom),
+      gather);
+}
+
+template <class Real>
+void add_advance(const StepPlan<Real>& plan, SetPasses<Real> passes) {
+  passes.add({"advance"}, reads(kPosition, kParticleVelocity, kMovingVelocity, kGradient),
+             writes(kPosition, kMotion), [kernel = plan.kernels->advance](const auto& at) {
+               const Real per_cell = static_cast<Real>(static_cast<double>(at.dt()) / at.spacing());
+               kernel(at.span(), at.read(kMovingVelocity).data(), at.read(kGradient).data(), per_cell,
+                      at.write(kMotion));
+             });
+}
+
+namespace {
+
+template <class Real, class To>
+void add_trial_as(const MaterialRuntime<Real>& material, To to, SetPasses<Real> passes) {
+  passes.add({"trial strain"}, reads(kHenckyStrain, kGradient), writes(to), [material, to](const auto& at) {
+    MaterialInput<Real> in = material_input(material, at);
+    take_strain(at.write(to), in);
+    std::copy_n(at.read(kGradient).begin(), kAffineComponents, in.gradient);
+    material.kernels.trial(in);
+  });
+}
+
+}  // namespace
+
+template <class Real>
+void add_trial(const MaterialRuntime<Real>& material, bool yields, SetPasses<Real> passes) {
+  if (yields) {
+    add_trial_as(material, kTrialStrain, passes);
+  } else {
+    add_trial_as(material, kHenckyStrain, passes);
+  }
+}
+
+template <class Real>
+void add_return_map(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
+  passes.add({"return map"}, reads(kTrialStrain), writes(kHenckyStrain), [material](const auto& at) {
+    MaterialInput<Real> in = material_input(material, at);
+    take_strain(at.write(kHenckyStrain), in);
+    material.kernels.project(in);
+  });
+}
+
+template <class Real>
+void add_yield_surface(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
+  passes.add({"yield surface"}, reads(), writes(kCone, kCohesion, kDilatancy),
+             [cone = material.cone](const auto& at) {
+               std::fill_n(at.write(kCone), at.count(), cone);
+               std::fill_n(at.write(kCohesion), at.count(), Real(0));
+               std::fill_n(at.write(kDilatancy), at.count(), Real(0));
+             });
+}
+
+template <class Real>
+void add_shaped_return_map(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
+  passes.add({"return map, shaped"}, reads(kTrialStrain, kCone, kCohesion, kDilatancy),
+             writes(kHenckyStrain, kPlastic, kSheared, kDilated), [material](const auto& at) {
+               MaterialInput<Real> in = material_input(material, at);
+               take_strain(at.write(kHenckyStrain), in);
+               material.kernels.project_shaped(
+                   in, {at.read(kCone), at.read(kCohesion), at.read(kDilatancy), at.write(kPlastic),
+                        at.write(kSheared), at.write(kDilated)});
+             });
+}
+
+template <class Real>
+void add_normalize(StepPlan<Real>& plan) {
+  plan.nodes.push_back(plan.passes().over_nodes(
+      {"node velocity"}, reads(kNodeMomentum), writes(kNodeVelocity, kActiveNodes),
+      [kernel = plan.kernels->normalize, least_mass = plan.least_mass](const auto& at) {
+        at.write(kActiveNodes) = kernel(at.write(kNodeVelocity), least_mass);
+      }));
+}
+
+template <class Real>
+void add_velocity_before_forces(StepPlan<Real>& plan) {
+  const char* const key = plan.transfer.figures().keeps_velocity ? "grid.transfer" : "time.integrator";
+  plan.order.push_back(plan.passes().after_order(
+      {"room for velocity before forces", key}, reads(kTopology), writes(),
+      [](const auto& at) { at.state().before_forces.resize(at.state().grid.size()); }));
+  if (plan.transfer.figures().keeps_velocity) {
+    plan.nodes.push_back(plan.passes().over_nodes(
+        {"velocity before forces", key}, reads(kMomentumBeforeForces), writes(kVelocityBeforeForces),
+        [kernel = plan.kernels->normalize, least_mass = plan.least_mass](const auto& at) {
+          kernel(at.write(kVelocityBeforeForces), least_mass);
+        }));
+    return;
+  }
+  plan.nodes.push_back(plan.passes().over_nodes(
+      {"velocity at the begin", key}, reads(kNodeVelocity), writes(kVelocityBeforeForces), [](const auto& at) {
+        std::copy_n(at.read(kNodeVelocity), kBlockValues, at.write(kVelocityBeforeForces));
+      }));
+}
+
+#define REPOSE_INSTANTIATE(Real)                                                                \
+  template Lattice<Real> make_lattice(const State<Real>&, const TransferChoice&);               \
+  template void add_stress(const MaterialRuntime<Real>&, SetPasses<Real>);                      \
+  template void add_scatter(const StepPlan<Real>&, const Lattice<Real>&, SetPasses<Real>);      \
+  template void add_gather(const StepPlan<Real>&, const Lattice<Real>&, bool, SetPasses<Real>); \
+  template void add_advance(const StepPlan<Real>&, SetPasses<Real>);                            \
+  template void add_trial(const MaterialRuntime<Real>&, bool, SetPasses<Real>);                 \
+  template void add_return_map(const MaterialRuntime<Real>&, SetPasses<Real>);                  \
+  template void add_yield_surface(const MaterialRuntime<Real>&, SetPasses<Real>);               \
+  template void add_shaped_return_map(const MaterialRuntime<Real>&, SetPasses<Real>);           \
+  template void add_normalize(StepPlan<Real>&);                                                 \
+  template void add_velocity_before_forces(StepPlan<Real>&);
+REPOSE_INSTANTIATE(float)
+REPOSE_INSTANTIATE(double)
+#undef REPOSE_INSTANTIATE
+
+}  // namespace repose

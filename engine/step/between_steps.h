@@ -1,0 +1,38 @@
+// Repose: what happens between steps: particles begin and end, and are brought into order, lazily
+// (engine/state/block_order.h).
+#pragma once
+
+#include "engine/base/profile.h"
+#include "engine/state/block_order.h"
+#include "engine/sweep/active_blocks.h"
+
+namespace repose {
+
+template <class Real>
+class BetweenSteps {
+ public:
+  BetweenSteps(const StepPlan<Real>& plan, Threads& threads, ActiveBlocks<Real>& active, Profile& profile)
+      : plan_(plan), threads_(threads), active_(active), profile_(profile) {}
+
+  /// Carries out the events that are due. Returns whether particles have begun or ended. Error 78: no ids are
+  /// left; nothing has then changed.
+  Result<bool> carry_out_events(State<Real>& state, Moment moment);
+  /// Brings the order up to date, if it is due. Returns whether the blocks are not those that what follows the
+  /// topology knows.
+  bool order_if_due(State<Real>& state);
+  /// Rebuilds what follows the topology.
+  void follow_topology(State<Real>& state);
+
+  std::size_t bytes() const { return order_.bytes(); }
+  std::size_t scratch_bytes() const { return order_.scratch_bytes(); }
+
+ private:
+  const StepPlan<Real>& plan_;
+  Threads& threads_;
+  ActiveBlocks<Real>& active_;
+  Profile& profile_;
+  BlockOrder<Real> order_;
+  bool topology_known_ = false;  // to the passes that follow it
+};
+
+}  // namespace repose

@@ -1,0 +1,47 @@
+// Repose: what came of a step.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/base/result.h"
+#include "engine/base/vector.h"
+#include "engine/implicit/implicit_step.h"
+#include "engine/plan/time_step.h"
+
+namespace repose {
+
+/// The particle for whose sake a step was refused.
+struct Offender {
+  std::string set;
+  std::uint32_t id = 0;
+  Index3 block{0, 0, 0};
+  Vec3 position{0, 0, 0};        ///< m
+  Vec3 velocity{0, 0, 0};        ///< m/s, before the step
+  Vec3 trial_velocity{0, 0, 0};  ///< m/s, that the step would have moved it with
+  double determinant = 0.0;      ///< det(I + dt grad v)
+  std::string reason;            ///< what would happen to it, such as "would move over a cell"
+};
+
+struct StepReport {
+  bool accepted = false;
+  double dt = 0.0;  ///< s; of the step made, or of the last one refused
+  Limit limit = Limit::kMaxStep;
+  int redone = 0;                          ///< how often it was refused
+  std::string first_refusal;               ///< why, the first time; empty where it was not
+  std::optional<Offender> offender;        ///< of the last refusal
+  std::optional<Error> error;              ///< why no step was tried: an event failed, or memory would not do
+  std::optional<ImplicitReport> implicit;  ///< of the last try, where steps are implicit
+
+  /// The step is to be tried again, by half; `why` is kept of the first time.
+  void refuse(const std::string& why) {
+    if (redone == 0) first_refusal = why;
+  }
+};
+
+/// Why a step was refused: "particle 7 of 'pile' would move over a cell"; "it needs more than
+/// implicit.newton_iterations".
+std::string refusal_text(const Offender& offender);
+std::string unsolved_text(const ImplicitReport& report);
+
+}  // namespace repose

@@ -1,0 +1,271 @@
+#include "engine/sweep/active_blocks.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace repose {
+namespace {
+
+constexpr std::uint8_t kFar = 3;
+
+/// A sleeping block's nodes may go this many times the way that let it fall asleep: else neighbours that are
+/// about to sleep keep one another awake.
+constexpr double kPatience = 5.0;
+
+template <class Real>
+std::uint32_t particles_of(const State<Real>& state, std::size_t owner) {
+  std::uint32_t sum = 0;
+  for (const auto& set : state.sets) sum += set.begin[owner + 1] - set.begin[owner];
+  return sum;
+}
+
+/// Calls visit(block) for a block and its 26 neighbours.
+template <class Visit>
+void for_each_around(const Index3& block, Visit visit) {
+  for (int n = 0; n < kNeighbours; ++n) {
+    visit(Index3{block[0] + n / 9 - 1, block[1] + n / 3 % 3 - 1, block[2] + n % 3 - 1});
+  }
+}
+
+/// Goes on; returns how far it is from where it began, m.
+double go(std::array<double, 3>& way, const std::array<double, 3>& velocity, double dt) {
+  double square = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    way[axis] += velocity[axis] * dt;
+    square += way[axis] * way[axis];
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+template <class Real>
+ActiveBlocks<Real>::ActiveBlocks(StepPlan<Real>& plan)
+    : rule_(plan.sleep),
+      disturbances_(plan.disturbances),
+      drift_(plan.tables.template get<Real>(kDrift)),
+      moving_(plan) {}
+
+template <class Real>
+void ActiveBlocks<Real>::before_order(const State<Real>& state) {
+  if (!rule_) return;
+  const std::size_t owners = state.grid.owners().size();
+  old_blocks_.resize(owners);
+  old_counts_.resize(owners);
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    old_blocks_[owner] = state.grid.coordinates_of_owner(owner);
+    old_counts_[owner] = particles_of(state, owner);
+  }
+  old_ = state.rest;
+}
+
+/// `wakes(block, old owners)`: whether an owner at the block wakes that sleeps and has another number of
+/// particles.
+template <class Real>
+template <class Wakes>
+void ActiveBlocks<Real>::carry_over(State<Real>& state, Wakes wakes) {
+  listed_ = false;
+  if (!rule_) return;
+  RestField& rest = state.rest;
+  rest.resize(state.grid.owners().size());
+  if (old_.asleep.size() != old_blocks_.size()) return;  // before the first step: all are awake
+  OldOwners old;
+  for (std::size_t k = 0; k < old_blocks_.size(); ++k) old.emplace(old_blocks_[k], k);
+  std::vector<std::uint8_t> stays(old_blocks_.size(), 0);
+  for (std::size_t owner = 0; owner < rest.asleep.size(); ++owner) {
+    const Index3 block = state.grid.coordinates_of_owner(owner);
+    const auto found = old.find(block);
+    if (found == old.end()) continue;
+    stays[found->second] = 1;
+    rest.take(owner, old_, found->second);
+    if (rest.asleep[owner] == 0 || old_counts_[found->second] == particles_of(state, owner)) continue;
+    if (wakes(block, old)) rest.wake(owner);
+  }
+  for (const auto& [block, k] : old) {
+    if (stays[k] != 0) continue;
+    for_each_around(block, [&](const Index3& next) {
+      const std::int32_t owner = state.grid.find_owner(state.topology.wrap(next));
+      if (owner >= 0 && rest.asleep[static_cast<std::size_t>(owner)] != 0)
+        rest.wake(static_cast<std::size_t>(owner));
+    });
+  }
+}
+
+template <class Real>
+void ActiveBlocks<Real>::after_order(State<Real>& state) {
+  carry_over(state, [&](const Index3& block, const OldOwners& old) {
+    bool beside_awake = false;
+    for_each_around(block, [&](const Index3& next) {
+      const auto found = old.find(state.topology.wrap(next));
+      beside_awake = beside_awake || (found != old.end() && old_.asleep[found->second] == 0);
+    });
+    return beside_awake;
+  });
+}
+
+template <class Real>
+void ActiveBlocks<Real>::after_edit(State<Real>& state) {
+  carry_over(state, [](const Index3&, const OldOwners&) { return true; });
+}
+
+template <class Real>
+void ActiveBlocks<Real>::begin_step(State<Real>& state, double to) {
+  RestField& rest = state.rest;
+  const double from = state.counters.time;
+  for (std::size_t owner = 0; owner < rest.asleep.size() && !disturbances_.empty(); ++owner) {
+    if (rest.asleep[owner] == 0) continue;
+    const Index3 block = state.grid.coordinates_of_owner(owner);
+    const bool reached = std::any_of(
+        disturbances_.begin(), disturbances_.end(),
+        [&](const Disturbance<Real>& disturbance) { return disturbance.reaches(state, block, from, to); });
+    if (!reached) continue;
+    rest.wake(owner);
+    listed_ = false;
+  }
+  refresh(state);
+}
+
+/// How far owners are from one that is awake.
+template <class Real>
+void ActiveBlocks<Real>::measure_distances(const State<Real>& state) {
+  const std::size_t owners = state.grid.owners().size();
+  distance_.assign(owners, kFar);
+  for (std::size_t owner = 0; owner < owners; ++owner) {
+    if (state.rest.asleep[owner] == 0) distance_[owner] = 0;
+  }
+  for (std::uint8_t ring = 1; ring < kFar; ++ring) {
+    for (std::size_t owner = 0; owner < owners; ++owner) {
+      if (distance_[owner] != ring - 1) continue;
+      for (const std::int32_t block : state.grid.neighbours(owner)) {
+        const std::int32_t other = block < 0 ? -1 : state.grid.owner_of_block(static_cast<std::size_t>(block));
+        if (other < 0) continue;
+        std::uint8_t& distance = distance_[static_cast<std::size_t>(other)];
+        distance = std::min(distance, ring);
+      }
+    }
+  }
+}
+
+template <class Real>
+void ActiveBlocks<Real>::list(const State<Real>& state) {
+  listed_ = true;
+  const BlockGrid& grid = state.grid;
+  if (!rule_) {
+    set_.moving.resize(grid.owners().size());
+    std::iota(set_.moving.begin(), set_.moving.end(), 0);
+    set_.blocks.resize(grid.size());
+    std::iota(set_.blocks.begin(), set_.blocks.end(), 0);
+    for (std::size_t colour = 0; colour < set_.scatter.size(); ++colour) {
+      const auto owners = grid.colour(static_cast<int>(colour));
+      set_.scatter[colour].assign(owners.begin(), owners.end());
+    }
+    return;
+  }
+  measure_distances(state);
+  set_.moving.clear();
+  set_.margin.clear();
+  set_.blocks.clear();
+  reached_.assign(grid.size(), 0);
+  for (std::size_t owner = 0; owner < distance_.size(); ++owner) {
+    if (distance_[owner] == 0) set_.moving.push_back(static_cast<std::int32_t>(owner));
+    if (distance_[owner] == 1) set_.margin.push_back(static_cast<std::int32_t>(owner));
+    if (distance_[owner] == kFar) continue;
+    for (const std::int32_t block : grid.neighbours(owner)) {
+      if (block >= 0) reached_[static_cast<std::size_t>(block)] = 1;
+    }
+  }
+  for (std::size_t block = 0; block < reached_.size(); ++block) {
+    if (reached_[block] != 0) set_.blocks.push_back(static_cast<std::int32_t>(block));
+  }
+  for (std::size_t colour = 0; colour < set_.scatter.size(); ++colour) {
+    set_.scatter[colour].clear();
+    for (const std::int32_t owner : grid.colour(static_cast<int>(colour))) {
+      if (distance_[static_cast<std::size_t>(owner)] != kFar) set_.scatter[colour].push_back(owner);
+    }
+  }
+}
+
+/// Of the nodes with mass in the rows that the particles of an owner touch.
+template <class Real>
+typename ActiveBlocks<Real>::Stir ActiveBlocks<Real>::stir_of_nodes(OccupiedBlock<Real>& block) const {
+  moving_.load(block);
+  constexpr std::size_t kRowValues = kArenaSide * kNodeValues;
+  double most = 0.0, nodes = 0.0;
+  Stir stir;
+  for (std::uint64_t rows = *block.rows; rows != 0; rows &= rows - 1) {
+    const Real* const row =
+        block.scratch.at(moving_.place()) + static_cast<std::size_t>(std::countr_zero(rows)) * kRowValues;
+    for (std::size_t node = 0; node < kArenaSide; ++node) {
+      const Real* const at = row + node * kNodeValues;
+      if (!(at[0] > Real(0))) continue;
+      double square = 0.0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto v = static_cast<double>(at[1 + axis]);
+        stir.velocity[axis] += v;
+        square += v * v;
+      }
+      if (!(square <= most)) most = square;
+      nodes += 1.0;
+    }
+  }
+  stir.speed = std::sqrt(most);
+  for (double& v : stir.velocity) v /= std::max(nodes, 1.0);
+  return stir;
+}
+
+template <class Real>
+void ActiveBlocks<Real>::wake_margin(BlockSweep<Real>& sweep) {
+  RestField& rest = sweep.state().rest;
+  if (drift_ != nullptr) drift_->sums.assign(rest.asleep.size(), {});
+  if (set_.margin.empty()) return;
+  stirs_.resize(rest.asleep.size());
+  sweep.over(set_.margin, [this](OccupiedBlock<Real>& block) { stirs_[block.owner] = stir_of_nodes(block); });
+  for (const std::int32_t k : set_.margin) {
+    const auto owner = static_cast<std::size_t>(k);
+    if (rest.asleep[owner] == 0) continue;  // woken by an earlier try of this step
+    const double way = go(rest.way[owner], stirs_[owner].velocity, static_cast<double>(sweep.dt()));
+    // Not a number wakes too: inspection will say whose it is.
+    if (stirs_[owner].speed <= rule_->wake_speed && way <= kPatience * rule_->way) continue;
+    rest.wake(owner);
+    set_.moving.push_back(k);
+    listed_ = false;
+  }
+}
+
+template <class Real>
+void ActiveBlocks<Real>::end_step(State<Real>& state, double dt, std::span<const Motion<Real>> motion) {
+  if (!rule_) return;
+  for (const std::int32_t k : set_.moving) {
+    const auto owner = static_cast<std::size_t>(k);
+    const Drift::Sum& sum = drift_->sums[owner];
+    Stir stir{std::sqrt(static_cast<double>(motion[owner].speed_squared)), sum.velocity};
+    for (double& v : stir.velocity) v /= std::max(sum.samples, 1.0);
+    settle(state, owner, dt, stir);
+  }
+}
+
+template <class Real>
+void ActiveBlocks<Real>::settle(State<Real>& state, std::size_t owner, double dt, const Stir& stir) {
+  RestField& rest = state.rest;
+  const double way = go(rest.way[owner], stir.velocity, dt);
+  rest.calm[owner] += dt;
+  if (stir.speed >= rule_->speed) rest.begin_anew(owner);
+  if (rest.calm[owner] < rule_->after) return;
+  rest.begin_anew(owner);
+  if (way > rule_->way) return;
+  rest.asleep[owner] = 1;
+  listed_ = false;
+}
+
+template <class Real>
+std::size_t ActiveBlocks<Real>::bytes() const {
+  return set_.bytes() + distance_.capacity() + reached_.capacity() + stirs_.capacity() * sizeof(Stir) +
+         old_blocks_.capacity() * (sizeof(Index3) + sizeof(std::uint32_t) + 33);
+}
+
+template class ActiveBlocks<float>;
+template class ActiveBlocks<double>;
+
+}  // namespace repose
