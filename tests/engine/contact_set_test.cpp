@@ -30,6 +30,7 @@ struct OneNode {
       Constraint<double> hold;
       hold.node = kNode;
       hold.contact = contact;
+      hold.solid = 0;
       std::copy_n(normal.data(), 3, hold.normal);
       std::copy_n(wall.data(), 3, hold.velocity);
       hold.bound = normal.dot(wall);
@@ -195,6 +196,9 @@ TEST(ContactSet, WhatTheSolveFound_ActsAsInAnExplicitStep) {
   const Vec3 after = Eigen::Map<const Vec3>(nodes + kAt), free = falls - reaction / kMass;
   EXPECT_NEAR(after.y(), 0.0, 1e-14) << "the wall does not move along its normal";
   EXPECT_NEAR((free - node.wall).y(), -reaction.y() / kMass, 1e-15);
+  Vec3 given = Vec3::Zero();
+  for (const auto& [solid, change] : changes) given += change;
+  EXPECT_LT((given - reaction / kMass).norm(), 1e-12) << "what is recorded is what the solve gave";
   // Coulomb: along the wall it keeps what exceeds the bound, here nothing or its slip less the bound.
   const Vec3 slip = free - node.wall - Vec3(0.0, (free - node.wall).y(), 0.0);
   const double bound = kFriction * reaction.y() / kMass;
