@@ -2,8 +2,6 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <thread>
 
@@ -148,9 +146,5 @@ int main(int count, char** words) {
 }  // namespace repose
 
 int main(int count, char** words) {
-  // What is given back is given back: else memory that setting up took would stay, and no forecast could be
-  // true.
-  mallopt(M_MMAP_THRESHOLD, 1 << 18);
-  mallopt(M_TRIM_THRESHOLD, 1 << 20);
   return repose::main(count, words);
 }

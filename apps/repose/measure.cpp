@@ -1,5 +1,6 @@
 #include "apps/repose/measure.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -47,6 +48,10 @@ Json::Value figures(const Simulation& simulation, std::int64_t steps, double sec
 }
 
 }  // namespace
+
+void give_back_memory() {
+  malloc_trim(0);
+}
 
 std::int64_t peak_rss_bytes() {
   rusage usage{};

@@ -11,6 +11,10 @@
 
 namespace repose {
 
+/// Gives back to the system what nobody holds: setting up a scene takes more than running it, and with what
+/// then lay about no forecast would be true.
+void give_back_memory();
+
 /// Most memory that the process has held so far, and what it holds now, bytes; with its program and libraries.
 std::int64_t peak_rss_bytes();
 std::int64_t resident_bytes();

@@ -1,5 +1,4 @@
 // Repose: `repose plan`: what a scene would do, before it does it.
-#include <malloc.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -76,7 +75,7 @@ void print_effects(const Scene& scene, const Simulation& simulation) {
 /// lies there now, with room for the first step; what steps will add is the grid's growth, and what writing a
 /// frame takes comes and goes.
 void print_memory(const Simulation& simulation, double emission) {
-  malloc_trim(0);
+  give_back_memory();
   const MemoryUse memory = simulation.memory();
   const auto total = static_cast<double>(memory.total()), now = static_cast<double>(resident_bytes());
   const auto growth =

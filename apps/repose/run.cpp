@@ -10,6 +10,7 @@
 
 #include "apps/repose/command.h"
 #include "apps/repose/frame_files.h"
+#include "apps/repose/measure.h"
 #include "apps/repose/output_folder.h"
 #include "apps/repose/progress.h"
 #include "apps/repose/run_log.h"
@@ -308,6 +309,7 @@ int run_command(const RunArguments& arguments) {
   if (!folder) return fail(folder.error());
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
+  give_back_memory();
   return Run(arguments, std::move(*scene), *frames, std::move(*folder), std::move(*simulation)).go();
 }
 
