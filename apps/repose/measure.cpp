@@ -50,6 +50,8 @@ Json::Value figures(const Simulation& simulation, std::int64_t steps, double sec
 }  // namespace
 
 void give_back_memory() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 18);  // from here on: set-up makes many a vector, and would pay for each
+  mallopt(M_TRIM_THRESHOLD, 1 << 20);
   malloc_trim(0);
 }
 

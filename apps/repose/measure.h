@@ -11,8 +11,8 @@
 
 namespace repose {
 
-/// Gives back to the system what nobody holds: setting up a scene takes more than running it, and with what
-/// then lay about no forecast would be true.
+/// Gives back to the system what nobody holds, now and from here on: setting up a scene takes more than running
+/// it, and so does writing a frame; with what lay about after them no forecast would be true.
 void give_back_memory();
 
 /// Most memory that the process has held so far, and what it holds now, bytes; with its program and libraries.
