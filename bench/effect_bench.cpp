@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cstdio>
 
+#include "engine/compiler/figures.h"
 #include "engine/effect/effects.h"
-#include "engine/scene/figures.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 #include "engine/simulation/simulation.h"
 
 namespace repose {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "bench/implicit_column.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 
 namespace repose {
 namespace {

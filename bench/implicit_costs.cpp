@@ -5,9 +5,9 @@
 #include <ctime>
 #include <limits>
 
+#include "engine/compiler/compiler.h"
 #include "engine/plan/frame_clock.h"
-#include "engine/scene/compiler.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 #include "engine/step/stepper.h"
 
 namespace repose {
@@ -46,7 +46,7 @@ double processor_time() {
 Result<double> advance(Stepper<float>& stepper, State<float>& state) {
   const StepReport report = stepper.step(state, std::numeric_limits<double>::infinity());
   if (!report.accepted) {
-    const std::string why = report.offender ? refusal_text(*report.offender) : report.first_refusal;
+    const std::string why = report.failed ? refusal_text(*report.failed) : report.first_refusal;
     return Error{ErrorKind::kPhysics, "a step was refused: " + why, "implicit_costs"};
   }
   FrameClock::advance_freely(state.counters, report.dt);

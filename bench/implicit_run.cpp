@@ -4,7 +4,7 @@
 #include <ctime>
 
 #include "bench/page.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 
 namespace repose {
 namespace {

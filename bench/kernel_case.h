@@ -31,6 +31,8 @@ void add_material_cases(const Kernels<Real>& table, std::vector<KernelCase<Real>
 template <class Real>
 void add_particle_cases(const Kernels<Real>& table, std::vector<KernelCase<Real>>& cases);
 template <class Real>
+void add_effect_cases(Target target, std::vector<KernelCase<Real>>& cases);
+template <class Real>
 void add_node_cases(const Kernels<Real>& table, std::vector<KernelCase<Real>>& cases);
 
 template <class Real>
@@ -40,6 +42,7 @@ std::vector<KernelCase<Real>> all_cases(Target target) {
   add_transfer_cases(table, cases);
   add_material_cases(table, cases);
   add_particle_cases(table, cases);
+  add_effect_cases(target, cases);
   add_node_cases(table, cases);
   return cases;
 }

@@ -1,6 +1,6 @@
-// Repose: trial strain, return map and stress of every material. A new one needs the overloads below: where its
-// elastic constants are, the work of its stress, and, if it yields, the references of its return maps and the
-// work of them.
+// Repose: trial strain, return map and stress of every material. What is measured against a reference has
+// overloads below: where a material's elastic constants are, the work of its stress, and, if it yields, the
+// references of its return maps and the work of them. A material without is timed by `scene_bench` alone.
 #include <memory>
 
 #include "bench/kernel_case.h"
@@ -11,19 +11,19 @@ namespace repose {
 namespace {
 
 template <class Real>
-void reference_project(const DruckerPragerConstants<Real>&, const MaterialInput<Real>& in) {
-  reference::project_drucker_prager(in);
+void reference_return_map(const DruckerPragerConstants<Real>&, const MaterialInput<Real>& in) {
+  reference::return_map_drucker_prager(in);
 }
-Work project_work(const DruckerPragerParameters&) {
-  return project_drucker_prager_work();
+Work return_map_work(const DruckerPragerParameters&) {
+  return return_map_drucker_prager_work();
 }
 template <class Real>
-void reference_project_shaped(const DruckerPragerConstants<Real>&, const MaterialInput<Real>& in,
-                              const YieldInput<Real>& surface) {
-  reference::project_shaped_drucker_prager(in, surface);
+void reference_return_map_per_particle(const DruckerPragerConstants<Real>&, const MaterialInput<Real>& in,
+                                       const YieldInput<Real>& surface) {
+  reference::return_map_per_particle_drucker_prager(in, surface);
 }
-Work project_shaped_work(const DruckerPragerParameters&) {
-  return project_shaped_drucker_prager_work();
+Work return_map_per_particle_work(const DruckerPragerParameters&) {
+  return return_map_per_particle_drucker_prager_work();
 }
 template <class Real>
 const HenckyConstants<Real>& elastic_part(const DruckerPragerConstants<Real>& constants) {
@@ -64,22 +64,26 @@ void add_material(const Parameters& parameters, const MaterialKernels<Real>& ker
   cases.push_back({"trial" + of, 0, kChunk, trial_work<Real>(),
                    [=](Workpiece<Real>& piece) { kernel.trial(to_and_fro(piece)); },
                    [=](Workpiece<Real>& piece) { reference::trial(to_and_fro(piece)); }});
-  if constexpr (Parameters::kYields) {
+  if constexpr (requires { return_map_work(parameters); }) {
     cases.push_back(
-        {"project" + of, 0, kChunk, project_work(parameters),
-         [=](Workpiece<Real>& piece) { kernel.project(piece.material(constants.get())); },
-         [=](Workpiece<Real>& piece) { reference_project(*constants, piece.material(constants.get())); }});
-    cases.push_back(
-        {"project_shaped" + of, 0, kChunk, project_shaped_work(parameters),
-         [=](Workpiece<Real>& piece) { kernel.project_shaped(piece.material(nullptr), piece.surface()); },
-         [=](Workpiece<Real>& piece) {
-           reference_project_shaped(*constants, piece.material(nullptr), piece.surface());
-         }});
+        {"return_map" + of, 0, kChunk, return_map_work(parameters),
+         [=](Workpiece<Real>& piece) { kernel.return_map(piece.material(constants.get())); },
+         [=](Workpiece<Real>& piece) { reference_return_map(*constants, piece.material(constants.get())); }});
+    cases.push_back({"return_map_per_particle" + of, 0, kChunk, return_map_per_particle_work(parameters),
+                     [=](Workpiece<Real>& piece) {
+                       kernel.return_map_per_particle(piece.material(nullptr), piece.surface());
+                     },
+                     [=](Workpiece<Real>& piece) {
+                       reference_return_map_per_particle(*constants, piece.material(nullptr), piece.surface());
+                     }});
   }
-  cases.push_back(
-      {"stress" + of, 0, kChunk, stress_work<Real>(parameters),
-       [=](Workpiece<Real>& piece) { kernel.stress(piece.material(constants.get())); },
-       [=](Workpiece<Real>& piece) { reference::stress(elastic_part(*constants), piece.material(nullptr)); }});
+  if constexpr (requires { stress_work<Real>(parameters); }) {
+    cases.push_back({"stress" + of, 0, kChunk, stress_work<Real>(parameters),
+                     [=](Workpiece<Real>& piece) { kernel.stress(piece.material(constants.get())); },
+                     [=](Workpiece<Real>& piece) {
+                       reference::stress(elastic_part(*constants), piece.material(nullptr));
+                     }});
+  }
 }
 
 }  // namespace

@@ -97,13 +97,13 @@ void add_node_cases(const Kernels<Real>& table, std::vector<KernelCase<Real>>& c
     add_arena_cases(table, stencil, cases);
   constexpr std::size_t kItems = kBlocks * kBlockNodes;
   cases.push_back({"normalize", 0, kItems, normalize_work(),
-                   [&table](Piece& piece) { normalize_blocks(piece, table.normalize); },
+                   [&table](Piece& piece) { normalize_blocks(piece, table.node.normalize); },
                    [](Piece& piece) { normalize_blocks(piece, reference::normalize<Real>); }});
   cases.push_back({"accelerate", 0, kItems, accelerate_work(),
-                   [&table](Piece& piece) { accelerate_blocks(piece, table.accelerate); },
+                   [&table](Piece& piece) { accelerate_blocks(piece, table.node.accelerate); },
                    [](Piece& piece) { accelerate_blocks(piece, reference::accelerate<Real>); }});
   cases.push_back({"bound", 0, kItems, bound_work(),
-                   [&table](Piece& piece) { bound_blocks(piece, table.bound); },
+                   [&table](Piece& piece) { bound_blocks(piece, table.node.bound); },
                    [](Piece& piece) { bound_blocks(piece, reference::bound<Real>); }});
 }
 template void add_node_cases(const Kernels<float>&, std::vector<KernelCase<float>>&);

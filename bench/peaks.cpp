@@ -7,7 +7,7 @@
 
 #include "bench/peak_loops.h"
 #include "bench/peaks.h"
-#include "kernels/base/simd.h"
+#include "kernels/base/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {

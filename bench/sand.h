@@ -46,7 +46,7 @@ struct Workpiece {
   Real* const* before() const { return near + 9; }
   Real* const* gradient() const { return near + 12; }
   Real* trace() const { return near[21]; }
-  Real* cone() const { return near[22]; }
+  Real* yield_slope() const { return near[22]; }
   Real* cohesion() const { return near[23]; }
 
   ParticleSpan<Real> particles() const;

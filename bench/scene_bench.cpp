@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "apps/repose/measure.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 
 namespace repose {
 namespace {

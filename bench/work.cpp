@@ -8,7 +8,7 @@
 #include <array>
 #include <iterator>
 
-#include "kernels/base/matrix_function.h"
+#include "kernels/base/matrix_function-inl.h"
 #include "kernels/layout/node_block.h"
 #include "kernels/pass/pass.h"
 
@@ -157,13 +157,13 @@ template Work stress_neo_hookean_work<float>();
 template Work stress_neo_hookean_work<double>();
 
 /// Trace and mean 3, deviator 3, its norm 13, dg 2, share kept 2, product and mean 9.
-Work project_drucker_prager_work() {
+Work return_map_drucker_prager_work() {
   return {.read = 6, .written = 6, .flops = 32};
 }
 
 /// Trace and mean 3, deviator 3, its norm 13; dg 7; trace and apex left 3; norm kept 2; what was lost 9;
 /// product and mean 10.
-Work project_shaped_drucker_prager_work() {
+Work return_map_per_particle_drucker_prager_work() {
   return {.read = 6, .written = 6, .near_read = 3, .near_written = 3, .flops = 50};
 }
 /// Reduction of exp 6 and its series; the angle 5; sine: square, series, its end 3; slope over sine 2 and their
@@ -177,7 +177,7 @@ template Work harden_work<float>();
 template Work harden_work<double>();
 /// Trace and mean 3, deviator 3, its norm 13; what exceeds the cone 3; g 2, b 4, root 6; both forms of dg 7;
 /// the new cone 3.
-Work quicken_work() {
+Work strengthen_work() {
   return {.read = 6, .near_read = 2, .near_written = 1, .flops = 44};
 }
 /// The test 18; scaling 7 and back 3; 41 a rotation, three a sweep; the bound 7; composed again 48; traces 4.
@@ -194,7 +194,7 @@ Work advance_work() {
   return {.read = 6, .written = 3, .near_read = 12, .flops = 30};
 }
 /// I + dt grad v 18, determinant 14.
-Work inspect_work() {
+Work first_failed_work() {
   return {.near_read = 12, .flops = 32};
 }
 Work open_volume_work() {

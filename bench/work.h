@@ -33,17 +33,17 @@ Work trial_work();
 Work stress_hencky_work();
 template <class Real>
 Work stress_neo_hookean_work();
-Work project_drucker_prager_work();
-Work project_shaped_drucker_prager_work();
+Work return_map_drucker_prager_work();
+Work return_map_per_particle_drucker_prager_work();
 template <class Real>
 Work harden_work();
-Work quicken_work();
+Work strengthen_work();
 /// Where some strain of a pack may exceed the limit, so that all of the pack pay for eigenvalues.
 template <class Real>
 Work cut_tension_work();
 
 Work advance_work();
-Work inspect_work();
+Work first_failed_work();
 Work open_volume_work();
 Work close_volume_work();
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 #include "engine/simulation/simulation.h"
 
 namespace repose {

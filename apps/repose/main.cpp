@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "apps/repose/command.h"
-#include "engine/scene/wording.h"
+#include "engine/base/wording.h"
 
 namespace repose {
 namespace {

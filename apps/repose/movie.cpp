@@ -12,6 +12,8 @@
 #include "apps/repose/render/film.h"
 #include "apps/repose/render/grains.h"
 #include "apps/repose/run_log.h"
+#include "engine/compiler/compiler.h"
+#include "engine/effect/solid.h"
 #include "engine/io/point_cloud.h"
 
 namespace repose {

@@ -5,8 +5,8 @@
 
 #include "apps/repose/command.h"
 #include "apps/repose/measure.h"
+#include "engine/compiler/figures.h"
 #include "engine/plan/time_step.h"
-#include "engine/scene/figures.h"
 
 namespace repose {
 namespace {
@@ -18,18 +18,16 @@ std::string join(const std::vector<std::string>& words, const char* between = ",
 }
 
 /// "reads cone, strain"; empty where there is none.
-std::string listed(const char* verb, const std::vector<HandleInfo>& handles) {
-  std::vector<std::string> names;
-  for (const HandleInfo& handle : handles) names.emplace_back(handle.name);
-  return names.empty() ? "" : verb + join(names);
+std::string listed(const char* verb, const std::vector<std::string>& handles) {
+  return handles.empty() ? "" : verb + join(handles);
 }
 
 void print_passes(const Simulation& simulation) {
   std::printf("\nstep\n");
   std::string phase;
-  for (const auto& [where, pass] : simulation.passes()) {
-    if (where != phase) std::printf("  %s\n", where.c_str());
-    phase = where;
+  for (const PassReport& pass : simulation.passes()) {
+    if (pass.phase != phase) std::printf("  %s\n", pass.phase.c_str());
+    phase = pass.phase;
     std::vector<std::string> what;
     for (const std::string& part : {listed("reads ", pass.reads), listed("writes ", pass.writes)}) {
       if (!part.empty()) what.push_back(part);
@@ -40,11 +38,11 @@ void print_passes(const Simulation& simulation) {
 }
 
 /// The passes that an effect adds, each once although several sets have it: "phase: pass, pass; phase: pass".
-std::string stages_of(const std::string& effect, const Simulation& simulation) {
+std::string passes_of(const std::string& effect, const Simulation& simulation) {
   std::vector<std::pair<std::string, std::vector<std::string>>> phases;
-  for (const auto& [where, pass] : simulation.passes()) {
+  for (const PassReport& pass : simulation.passes()) {
     if (pass.effect != effect) continue;
-    const std::string phase = where.substr(0, where.find(' '));
+    const std::string phase = pass.phase.substr(0, pass.phase.find(' '));
     if (phases.empty() || phases.back().first != phase) phases.emplace_back(phase, std::vector<std::string>{});
     auto& names = phases.back().second;
     if (std::find(names.begin(), names.end(), pass.name) == names.end()) names.push_back(pass.name);
@@ -57,7 +55,7 @@ std::string stages_of(const std::string& effect, const Simulation& simulation) {
 }
 
 void print_effects(const Scene& scene, const Simulation& simulation) {
-  std::printf("\neffects                    bytes     time   for the sake of; stages\n");
+  std::printf("\neffects                    bytes     time   for the sake of; passes\n");
   for (const EffectStatus& effect : effect_status(scene)) {
     if (!effect.on) {
       std::printf("  %-20s off     -        -   %s\n", effect.name.c_str(), effect.reason.c_str());
@@ -65,8 +63,8 @@ void print_effects(const Scene& scene, const Simulation& simulation) {
     }
     std::printf("  %-20s on  %5zu  +%4.1f ns   %s\n", effect.name.c_str(), effect.bytes_per_particle,
                 effect.nanoseconds, effect.reason.c_str());
-    if (const std::string stages = stages_of(effect.name, simulation); !stages.empty())
-      std::printf("  %42s %s\n", "", stages.c_str());
+    if (const std::string passes = passes_of(effect.name, simulation); !passes.empty())
+      std::printf("  %42s %s\n", "", passes.c_str());
   }
   std::printf("  bytes and time are per particle, time per step on one core, about\n");
 }

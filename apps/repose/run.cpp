@@ -15,7 +15,7 @@
 #include "apps/repose/progress.h"
 #include "apps/repose/run_log.h"
 #include "engine/io/atomic_file.h"
-#include "engine/scene/identity.h"
+#include "engine/reading/identity.h"
 
 namespace repose {
 namespace {
@@ -211,17 +211,17 @@ Result<void> Run::write_bundle(const Error& error) {
   json["error"] = error.text();
   json["step"] = Json::Int64(simulation_->counters().step);
   json["time"] = simulation_->counters().time;
-  if (const auto& offender = simulation_->offender()) {
+  if (const auto& failed = simulation_->failed_particle()) {
     Json::Value& particle = json["particle"];
-    particle["set"] = offender->set;
-    particle["id"] = offender->id;
-    particle["reason"] = offender->reason;
-    particle["determinant"] = offender->determinant;
-    for (int axis = 0; axis < 3; ++axis) {
-      particle["block"].append(offender->block[static_cast<std::size_t>(axis)]);
-      particle["position"].append(offender->position[axis]);
-      particle["velocity"].append(offender->velocity[axis]);
-      particle["trial_velocity"].append(offender->trial_velocity[axis]);
+    particle["set"] = failed->set;
+    particle["id"] = failed->id;
+    particle["reason"] = failed->reason;
+    particle["determinant"] = failed->determinant;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      particle["block"].append(failed->block[axis]);
+      particle["position"].append(failed->position[axis]);
+      particle["velocity"].append(failed->velocity[axis]);
+      particle["trial_velocity"].append(failed->trial_velocity[axis]);
     }
   }
   json["memory_blocks"] = Json::UInt64(simulation_->memory().blocks);

@@ -9,15 +9,15 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/compiler/figures.h"
 #include "engine/io/atomic_file.h"
-#include "engine/scene/figures.h"
 
 namespace repose {
 namespace {
 
-Json::Value vector_json(const Vec3& v) {
+Json::Value vector_json(const Triple& v) {
   Json::Value json(Json::arrayValue);
-  for (int axis = 0; axis < 3; ++axis) json.append(v[axis]);
+  for (const double component : v) json.append(component);
   return json;
 }
 

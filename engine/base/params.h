@@ -34,6 +34,10 @@ class Fields {
   virtual void integer(const char* key, std::int64_t& value, const Quantity& quantity) = 0;
   virtual void flag(const char* key, bool& value, const char* meaning) = 0;
   virtual void text(const char* key, std::string& value, const char* meaning, bool required = false) = 0;
+  /// A path, relative to the scene's folder, which it may not leave unless whoever reads the scene allows it.
+  virtual void file(const char* key, std::string& value, const char* meaning, bool required = false) {
+    text(key, value, meaning, required);
+  }
   virtual void vector(const char* key, Vec3& value, const Quantity& quantity) = 0;
   virtual void integers(const char* key, std::array<std::int64_t, 3>& value, const Quantity& quantity) = 0;
 

@@ -1,5 +1,5 @@
 // Repose: where the time goes. A handful of named clocks; reading one costs tens of nanoseconds, so they stand
-// around stages, never inside them.
+// around phases, never inside them.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 namespace repose {
 
 /// Of an implicit step, kNewton is all of the solve but its linear systems, kKrylov those.
-enum class Phase { kOrder, kScatter, kNodes, kNewton, kKrylov, kInspect, kGather };
-inline constexpr std::array<const char*, 7> kPhaseNames{"order",  "scatter", "nodes", "newton",
-                                                        "krylov", "inspect", "gather"};
+enum class Phase { kOrder, kScatter, kNodes, kNewton, kKrylov, kAcceptance, kGather };
+inline constexpr std::array<const char*, 7> kPhaseNames{"order",  "scatter",    "nodes", "newton",
+                                                        "krylov", "acceptance", "gather"};
 
 /// Seconds spent per phase.
 struct Profile {

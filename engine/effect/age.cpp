@@ -1,25 +1,35 @@
 #include "engine/effect/age.h"
 
+#include "engine/effect/effect.h"
+
 namespace repose {
 
 std::vector<Example> Age::examples() {
   return {{"age", {}, {"age={}"}}};
 }
 
-void Age::declare(Fields& fields) {
+void Age::declare(Fields& fields, const SceneOutline&) {
   fields.object("age", enabled, false,
                 "particles remember when they began, for the attribute \"age\" of output.attributes",
                 [](Fields&) {});
 }
 
-template <class Real>
-void Age::initialize(Newcomers<Real>& newcomers) const {
-  Real* const birth = newcomers.set.extra[newcomers.set.extra_index(kBirth.kName)].values.data();
-  for (std::size_t p = newcomers.first; p < newcomers.last; ++p)
-    birth[p] = static_cast<Real>(newcomers.birth(p));
-}
+namespace {
 
-template void Age::initialize(Newcomers<float>&) const;
-template void Age::initialize(Newcomers<double>&) const;
+template <class Real>
+class BirthTimes : public Effect<Real> {
+ public:
+  explicit BirthTimes(const Age&) {}
+
+  void initialize(Newcomers<Real>& newcomers) const override {
+    Real* const birth = newcomers.channel(kBirth);
+    for (std::size_t p = newcomers.first; p < newcomers.last; ++p)
+      birth[p] = static_cast<Real>(newcomers.birth(p));
+  }
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Age, BirthTimes)
 
 }  // namespace repose

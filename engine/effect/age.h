@@ -3,24 +3,24 @@
 // resumed with other output.
 #pragma once
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
-struct Age : Effect {
+struct Age : EffectDescription {
   static constexpr const char* kName = "age";
   static std::vector<Example> examples();
 
   bool enabled = false;  ///< set by the presence of the scene key
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return enabled; }
   std::string why() const { return enabled ? "key 'age'" : "no key 'age'"; }
   std::vector<Channel> channels(const SetDescription&) const {
     return enabled ? std::vector<Channel>{{kBirth}} : std::vector<Channel>{};
   }
   template <class Real>
-  void initialize(Newcomers<Real>& newcomers) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

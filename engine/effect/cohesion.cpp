@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/effect/effect.h"
+#include "kernels/effect/cohesion.h"
+
 namespace repose {
 
 std::vector<Example> Cohesion::examples() {
@@ -9,7 +12,7 @@ std::vector<Example> Cohesion::examples() {
           {"cohesion: tension", {}, {R"(materials.sand.cohesion={"tension": {"limit": 100}})"}}};
 }
 
-void Cohesion::declare_in_sand(Fields& fields, const std::string& material) {
+void Cohesion::declare_in_cone(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, CohesionParameters& p) {
     f.number("strength", p.strength,
              {.unit = "Pa", .meaning = "c of Mohr-Coulomb; damp sand has 500 to 5000", .low = 0.0});
@@ -22,35 +25,42 @@ void Cohesion::declare_in_sand(Fields& fields, const std::string& material) {
   declare_entry(fields, kName, "strength without pressure", material, describe);
 }
 
-template <class Real>
-void Cohesion::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
-  const CohesionParameters* p = find(assembly.sets[set]);
-  if (p == nullptr) return;
-  const DruckerPragerParameters& sand = assembly.sets[set].sand();
-  const auto strength = static_cast<Real>(sand.cohesion_strain(p->strength));
-  assembly.gather(set).add(
-      {"cohesion", why()}, reads(kCohesion), writes(kCohesion),
-      [strength](const auto& at) { std::fill_n(at.write(kCohesion), at.count(), strength); });
-}
+namespace {
 
 template <class Real>
-void Cohesion::add_after_return(Assembly<Real>& assembly, std::size_t set) const {
-  const CohesionParameters* p = find(assembly.sets[set]);
-  if (p == nullptr || !p->cut_off) return;
-  const HenckyConstants<Real> elastic(assembly.sets[set].elasticity());
-  auto passes = assembly.gather(set);
-  const auto trace = when(passes.provides(kTraceOfTrial), kTraceOfTrial);
-  passes.add({"tension cut-off", why() + ".tension"}, reads(kHenckyStrain, trace), writes(kHenckyStrain, trace),
-             [kernel = assembly.plan.kernels->cut_tension, elastic,
-              limit = static_cast<Real>(p->tension)](const auto& at) {
-               kernel(at.write(kHenckyStrain).data(), elastic, limit, at.write(kTraceOfTrial), at.count());
-             });
-}
+class CohesionOfSand : public Effect<Real> {
+ public:
+  explicit CohesionOfSand(const Cohesion& cohesion) : cohesion_(cohesion) {}
 
-template void Cohesion::add_before_return(Assembly<float>&, std::size_t) const;
-template void Cohesion::add_before_return(Assembly<double>&, std::size_t) const;
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.for_each_set_of(cohesion_, [&](SetSlots<Real>& set, const CohesionParameters& p) {
+      const SetDescription& of = set.description;
+      const auto strength = static_cast<Real>(of.cone()->cohesion_strain(of.elasticity(), p.strength));
+      set.before_return.add(
+          {"cohesion", cohesion_.why()}, reads(kCohesion), writes(kCohesion),
+          [strength](const auto& at) { std::fill_n(at.write(kCohesion), at.count(), strength); });
+      if (p.cut_off) cut_tension(plan, set, p);
+    });
+  }
 
-template void Cohesion::add_after_return(Assembly<float>&, std::size_t) const;
-template void Cohesion::add_after_return(Assembly<double>&, std::size_t) const;
+ private:
+  void cut_tension(PlanBuilder<Real>& plan, SetSlots<Real>& set, const CohesionParameters& p) const {
+    const auto trace = when(set.before_return.provides(kTraceOfTrial), kTraceOfTrial);
+    set.after_return.add({"tension cut-off", cohesion_.why() + ".tension"}, reads(kHenckyStrain, trace),
+                         writes(kHenckyStrain, trace),
+                         [kernel = cohesion_kernels<Real>(plan.target()).cut_tension,
+                          elastic = HenckyConstants<Real>(set.description.elasticity()),
+                          limit = static_cast<Real>(p.tension)](const auto& at) {
+                           kernel(at.write(kHenckyStrain).data(), elastic, limit, at.write(kTraceOfTrial),
+                                  at.count());
+                         });
+  }
+
+  Cohesion cohesion_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Cohesion, CohesionOfSand)
 
 }  // namespace repose

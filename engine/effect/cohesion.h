@@ -4,7 +4,7 @@
 // would still carry some along a wall, as long as it is pressed downwards.
 #pragma once
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
@@ -14,17 +14,14 @@ struct CohesionParameters {
   double tension = 0.0;      ///< largest principal stress, Pa
 };
 
-struct Cohesion : SandEffect<CohesionParameters> {
+struct Cohesion : ConeDescription<CohesionParameters> {
   static constexpr const char* kName = "cohesion";
   static std::vector<Example> examples();
 
-  void declare_in_sand(Fields& fields, const std::string& material);
+  void declare_in_cone(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
-
   template <class Real>
-  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
-  template <class Real>
-  void add_after_return(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

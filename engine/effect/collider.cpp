@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/effect/contact_tables.h"
+#include "engine/effect/effect.h"
 
 namespace repose {
 namespace {
@@ -45,66 +46,13 @@ void describe(Fields& fields, Collider& collider) {
                "have no \"motion\" beside them; let the files hold all of it");
 }
 
-/// What a rigid or a deforming solid reaches while it moves.
-template <class Real>
-Disturbance<Real> disturbance(const Solid& solid) {
-  const auto may_reach = [](const State<Real>& state, double distance) {
-    return distance <= radius_of_particles_from_nodes() * state.spacing;
-  };
-  if (solid.sequence != nullptr) {
-    return {"solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from, double to) {
-              if (solid.sequence->fastest(from, to) == 0.0) return false;
-              const Vec3 x = BlockPlace<Real>(state, block).middle();
-              const double side = solid.hollow ? -1.0 : 1.0;
-              return may_reach(state, side * solid.sequence->at(from)->signed_distance(x)) ||
-                     may_reach(state, side * solid.sequence->at(to)->signed_distance(x));
-            }};
-  }
-  return {"solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from, double to) {
-            const Vec3 x = BlockPlace<Real>(state, block).middle();
-            const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
-            return before != after && may_reach(state, std::min(solid.distance(before), solid.distance(after)));
-          }};
-}
-
-/// Tables of what is near, made anew where blocks are, and where a solid moves, in each step.
-template <class Real>
-void add_tables(StepPlan<Real>& plan, const std::vector<Solid>& solids) {
-  const bool v_tilde = !plan.implicit || plan.advection == Advection::kBeforeFriction;
-  const auto& tables = plan.tables.template make<Real>(kContactTables, solids,
-                                                       plan.tables.template get<Real>(kContactLog), v_tilde);
-  plan.order.push_back(
-      plan.passes().after_order({"nodes near solids", "colliders"}, reads(kTopology), writes(kContactTables),
-                                [](const auto& at) { at.write(kContactTables).follow_topology(at.state()); }));
-  if (!tables.any_moves()) return;
-  const bool any_rigid =
-      std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.motion != nullptr; });
-  plan.prepare.push_back(plan.passes().each_try(
-      {"poses of solids", any_rigid ? "colliders.motion" : "colliders.frames"}, reads(kContactTables),
-      writes(kContactTables),
-      [](const auto& at, Real dt) { at.write(kContactTables).prepare(at.state(), dt); }));
-}
-
-/// Explicit steps let solids act at once; implicit ones solve within what they list.
-template <class Real>
-void add_contacts(StepPlan<Real>& plan) {
-  if (plan.implicit) {
-    plan.constraints.push_back(plan.passes().constraints(
-        {"contacts of solids", "colliders"}, reads(kNodeVelocity, kContactTables),
-        [](const auto& at, std::vector<Constraint<Real>>& constraints) {
-          at.read(kContactTables).list(at.block(), at.place(), at.dt(), at.read(kNodeVelocity), constraints);
-        }));
-    return;
-  }
-  const auto log = when(plan.tables.find(kContactLog.kInfo) != nullptr, kContactLog);
-  const auto tilde = when(plan.tables.template get<Real>(kContactTables)->any_friction(), kVTilde);
-  plan.holds.push_back(
-      plan.passes().over_nodes({"collide, friction", "colliders"}, reads(kNodeVelocity, kContactTables),
-                               writes(kNodeVelocity, tilde, log), [logs = log.declared](const auto& at) {
-                                 at.read(kContactTables)
-                                     .collide(at.block(), at.place(), at.dt(), at.write(kNodeVelocity),
-                                              at.write(kVTilde), logs ? &at.write(kContactLog) : nullptr);
-                               }));
+/// Across plane strain nothing moves, solids neither.
+bool stays_in_plane(const MotionDescription& motion, int flat_axis) {
+  return std::all_of(motion.keys.begin(), motion.keys.end(), [flat_axis](const MotionKey& key) {
+    Vec3 across = key.rotation_axis.normalized();
+    across[flat_axis] = 0.0;
+    return key.translation[flat_axis] == 0.0 && (key.rotation_angle == 0.0 || across.norm() < 1e-9);
+  });
 }
 
 }  // namespace
@@ -118,39 +66,149 @@ std::vector<Example> Colliders::examples() {
           {"colliders: motion", {solids + "}]"}, {solids + motion + "}]"}}};
 }
 
-void Colliders::declare(Fields& fields) {
-  fields.list("colliders", false, "solids that material runs into", [this](Fields& f) {
+void Colliders::declare(Fields& fields, const SceneOutline& outline) {
+  fields.list("colliders", false, "solids that material runs into", [&](Fields& f) {
     Collider collider;
     describe(f, collider);
-    const bool taken =
-        std::any_of(list.begin(), list.end(), [&](const Collider& c) { return c.name == collider.name; });
-    f.check(!taken, "name", "\"" + collider.name + "\" is taken by another collider; choose another");
+    check_name(f, list, collider, "collider");
+    f.check(outline.flat_axis < 0 || stays_in_plane(collider.motion, outline.flat_axis), "motion",
+            "must stay in the plane of plane_strain and turn about its axis");
     list.push_back(collider);
   });
 }
 
-double Colliders::top_speed(const std::vector<Solid>& solids, const Bounds& box) const {
-  double most = 0.0;
-  for (std::size_t k = 0; k < solids.size(); ++k) {
-    if (solids[k].moves()) most = std::max(most, MovingSolid(solids[k], k).fastest(0.0, kForEver, box));
+namespace {
+
+/// Builds a solid; errors name its key.
+Result<Solid> build(const Collider& collider, const Surroundings& around) {
+  const std::string key = "colliders." + collider.name;
+  Solid solid{collider.name, nullptr, collider.hollow, collider.contact, collider.friction, nullptr, nullptr};
+  if (collider.frames.given) {
+    auto sequence = MeshSequence::make(collider.shape, collider.frames, around.folder, around.spacing,
+                                       around.allow_outside_paths);
+    if (!sequence) return Error{sequence.error().kind, sequence.error().text(), around.where(key + ".frames")};
+    solid.sequence = *sequence;
+    solid.shape = solid.sequence->at(collider.frames.start);
+  } else {
+    auto shape = around.shape(collider.shape, key + ".shape");
+    if (!shape) return shape.error();
+    solid.shape = *shape;
   }
-  return most;
+  if (collider.motion.given) {
+    auto motion = RigidMotion::make(collider.motion);
+    if (!motion) return Error{motion.error().kind, motion.error().text(), around.where(key + ".motion")};
+    solid.motion = *motion;
+  }
+  return solid;
 }
 
+}  // namespace
+
+Result<void> Colliders::furnish(Surroundings& surroundings) const {
+  for (const Collider& collider : list) {
+    auto solid = build(collider, surroundings);
+    if (!solid) return solid.error();
+    surroundings.solids.push_back(std::move(*solid));
+  }
+  return {};
+}
+
+namespace {
+
+/// Solids act on nodes: v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016,
+/// sections 8 and 8.1), in the order of the list.
 template <class Real>
-void Colliders::add_to_nodes(Assembly<Real>& assembly) const {
-  StepPlan<Real>& plan = assembly.plan;
-  add_tables(plan, assembly.solids);
-  const auto* const tables = plan.tables.template get<Real>(kContactTables);
-  if (tables->any_moves())
-    plan.speeds.push_back([tables](double from, double to) { return tables->fastest(from, to); });
-  for (const Solid& solid : assembly.solids) {
-    if (solid.moves()) plan.disturbances.push_back(disturbance<Real>(solid));
-  }
-  add_contacts(plan);
-}
+class ContactWithSolids : public Effect<Real> {
+ public:
+  explicit ContactWithSolids(const Colliders&) {}
 
-template void Colliders::add_to_nodes(Assembly<float>&) const;
-template void Colliders::add_to_nodes(Assembly<double>&) const;
+  Result<void> prepare(const Surroundings& surroundings) override {
+    solids_ = surroundings.solids;
+    return {};
+  }
+
+  double top_speed(const Bounds& box) const override {
+    double most = 0.0;
+    for (std::size_t k = 0; k < solids_.size(); ++k) {
+      if (solids_[k].moves()) most = std::max(most, MovingSolid(solids_[k], k).fastest(0.0, kForEver, box));
+    }
+    return most;
+  }
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    add_tables(plan);
+    const auto* const tables = plan.find(kContactTables);
+    if (tables->any_moves())
+      plan.speeds.add([tables](double from, double to) { return tables->fastest(from, to); });
+    for (const Solid& solid : solids_) {
+      if (solid.moves()) disturb(plan.rest, solid);
+    }
+    add_contacts(plan);
+  }
+
+ private:
+  /// What is near, made anew where blocks are, and where a solid moves, in each step.
+  void add_tables(PlanBuilder<Real>& plan) const {
+    const bool v_tilde = !plan.implicit() || plan.advection() == Advection::kBeforeFriction;
+    const auto& tables = plan.make(kContactTables, solids_, plan.find(kContactLog), v_tilde);
+    plan.after_order.add({"nodes near solids", "colliders"}, reads(kTopology), writes(kContactTables),
+                         [](const auto& at) { at.write(kContactTables).follow_topology(at.state()); });
+    if (!tables.any_moves()) return;
+    const bool any_rigid =
+        std::any_of(solids_.begin(), solids_.end(), [](const Solid& s) { return s.motion != nullptr; });
+    plan.each_try.add({"poses of solids", any_rigid ? "colliders.motion" : "colliders.frames"},
+                      reads(kContactTables), writes(kContactTables),
+                      [](const auto& at, Real dt) { at.write(kContactTables).prepare(at.state(), dt); });
+  }
+
+  /// Explicit steps let solids act at once; implicit ones solve within what they list.
+  static void add_contacts(PlanBuilder<Real>& plan) {
+    const auto log = when(plan.find(kContactLog) != nullptr, kContactLog);
+    const auto tilde = when(plan.find(kContactTables)->any_friction(), kVTilde);
+    plan.constraints.add_last(
+        {"contacts of solids", "colliders"}, reads(kNodeVelocity, kContactTables),
+        [](const auto& at, std::vector<Constraint<Real>>& constraints) {
+          at.read(kContactTables).list(at.block(), at.place(), at.dt(), at.read(kNodeVelocity), constraints);
+        },
+        [=](ForceSlot<Real>& applied) {
+          applied.add({"collide, friction", "colliders"}, reads(kNodeVelocity, kContactTables),
+                      writes(kNodeVelocity, tilde, log), [logs = log.declared](const auto& at) {
+                        at.read(kContactTables)
+                            .collide(at.block(), at.place(), at.dt(), at.write(kNodeVelocity),
+                                     at.write(kVTilde), logs ? &at.write(kContactLog) : nullptr);
+                      });
+        });
+  }
+
+  /// What a rigid or a deforming solid reaches while it moves.
+  static void disturb(RestSlot<Real>& rest, const Solid& solid) {
+    const auto may_reach = [](const State<Real>& state, double distance) {
+      return distance <= radius_of_particles_from_nodes() * state.spacing;
+    };
+    if (solid.sequence != nullptr) {
+      rest.wake("solid " + solid.name,
+                [=](const State<Real>& state, const Index3& block, double from, double to) {
+                  if (solid.sequence->fastest(from, to) == 0.0) return false;
+                  const Vec3 x = BlockPlace<Real>(state, block).middle();
+                  const double side = solid.hollow ? -1.0 : 1.0;
+                  return may_reach(state, side * solid.sequence->at(from)->signed_distance(x)) ||
+                         may_reach(state, side * solid.sequence->at(to)->signed_distance(x));
+                });
+      return;
+    }
+    rest.wake(
+        "solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from, double to) {
+          const Vec3 x = BlockPlace<Real>(state, block).middle();
+          const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
+          return before != after && may_reach(state, std::min(solid.distance(before), solid.distance(after)));
+        });
+  }
+
+  std::vector<Solid> solids_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Colliders, ContactWithSolids)
 
 }  // namespace repose

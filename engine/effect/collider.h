@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/params.h"
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 #include "engine/geometry/mesh_sequence.h"
+#include "engine/geometry/motion.h"
+#include "engine/plan/constraint.h"
 
 namespace repose {
 
@@ -32,24 +33,20 @@ struct Collider {
 };
 
 /// All colliders of a scene, as one effect: a node may be near several.
-struct Colliders : Effect {
+struct Colliders : EffectDescription {
   static constexpr const char* kName = "collider";
   static std::vector<Example> examples();
 
   std::vector<Collider> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
-  std::string why() const {
-    return list.empty() ? "no entry in 'colliders'" : std::to_string(list.size()) + " in 'colliders'";
-  }
+  std::string why() const { return entries_text(list.size(), "colliders"); }
 
-  double top_speed(const std::vector<Solid>& solids, const Bounds& box) const;
-  /// v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016, sections 8 and 8.1),
-  /// in the order of the list; the tables that this needs, after each order event; and where a solid moves, its
-  /// poses.
+  /// The solids. Errors: 65, 66, naming the collider.
+  Result<void> furnish(Surroundings& surroundings) const;
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

@@ -3,7 +3,7 @@
 // volume at which it shears without opening further.
 #pragma once
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
@@ -12,20 +12,17 @@ struct DilatancyParameters {
   double limit = 0.1;   ///< log volume opened by shear at which it has faded to nothing
 };
 
-struct Dilatancy : SandEffect<DilatancyParameters> {
+struct Dilatancy : ConeDescription<DilatancyParameters> {
   static constexpr const char* kName = "dilatancy";
   static std::vector<Example> examples();
   /// The channel: log volume opened by shear.
   static constexpr Handle<"dilation", Place::kExtra> kOpened{};
 
-  void declare_in_sand(Fields& fields, const std::string& material);
+  void declare_in_cone(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
   std::vector<Channel> channels(const SetDescription& set) const;
-
   template <class Real>
-  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
-  template <class Real>
-  void add_after_return(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

@@ -1,16 +1,16 @@
-// Repose: the list of effects. A new one is a pair of files and a line here; scene keys, schema, plan, run.json
-// and the compiler go through the list. Node passes run in its order.
+// Repose: the list of effects, as scenes describe them. A new one is a pair of files and a line here; scene
+// keys, schema, plan, run.json and the compiler go through the list. Effects add to a step in its order.
 #pragma once
 
-#include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "engine/effect/collider.h"
 #include "engine/effect/gravity.h"
 
 #ifdef REPOSE_BARE  // what a build without the others does, they must not change
 namespace repose {
-using Effects = std::tuple<Gravity, Colliders>;
+using BuiltInEffects = std::tuple<Gravity, Colliders>;
 }  // namespace repose
 #else
 #include "engine/effect/age.h"
@@ -31,55 +31,50 @@ using Effects = std::tuple<Gravity, Colliders>;
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
-using Effects = std::tuple<Emitters,          // particles that begin
-                           Sinks,             // and end
-                           Gravity,           // v += dt g
-                           ForceFields,       // accelerations and winds of regions
-                           Pins,              // v* of held nodes
-                           Probes,            // asks solids for a log, so before them
-                           Colliders,         // v* -> v-bar -> v-tilde: last of the node passes
-                           Sleep,             // blocks at rest take no part
-                           Prestress,         // bodies begin under their weight
-                           Manufactured,      // bodies that move as a formula says
-                           Age,               // when particles began
-                           VolumeCorrection,  // around the return map, and around all that follows here
-                           Hardening,         // cone <- that of the shear so far
-                           Cohesion,          // cohesion, and tension after the return
-                           Moisture,          // cohesion +
-                           Variation,         // cone *, cohesion *
-                           Dilatancy,         // dilatancy, and what it opens
-                           RateFriction>;     // cone +, by the trial strain: last of the cone
+using BuiltInEffects = std::tuple<Emitters,          // particles that begin
+                                  Sinks,             // and end
+                                  Gravity,           // v += dt g
+                                  ForceFields,       // accelerations and winds of regions
+                                  Pins,              // v* of held nodes
+                                  Probes,            // figures that are measured
+                                  Colliders,         // v* -> v-bar -> v-tilde
+                                  Sleep,             // blocks at rest take no part
+                                  Prestress,         // bodies begin under their weight
+                                  Manufactured,      // bodies that move as a formula says
+                                  Age,               // when particles began
+                                  VolumeCorrection,  // around the return map, and around all that follows here
+                                  Hardening,         // cone <- that of the shear so far
+                                  Cohesion,          // cohesion, and tension after the return
+                                  Moisture,          // cohesion +
+                                  Variation,         // cone *, cohesion *
+                                  Dilatancy,         // dilatancy, and what it opens
+                                  RateFriction>;     // cone +, by the trial strain: last of the cone
+}  // namespace repose
+#endif
+
+#ifdef REPOSE_SPECIMENS  // effects that show, and test, how one is written
+#include "tests/specimens/effects.h"
+#else
+namespace repose {
+using SpecimenEffects = std::tuple<>;
 }  // namespace repose
 #endif
 
 namespace repose {
 
+using Effects = decltype(std::tuple_cat(std::declval<BuiltInEffects>(), std::declval<SpecimenEffects>()));
+
+template <class... D>
+constexpr bool all_describe(std::tuple<D...>*) {
+  static_assert((Description<D> && ...), "each effect of the list has what the concept Description asks for");
+  return true;
+}
+static_assert(all_describe(static_cast<Effects*>(nullptr)));
+
 /// Calls visit(effect) for each effect of the list, in order.
 template <class List, class Visit>
 void for_each_effect(List& effects, Visit visit) {
   std::apply([&](auto&... effect) { (visit(effect), ...); }, effects);
-}
-
-/// The same from the last to the first.
-template <class List, class Visit>
-void for_each_effect_reversed(List& effects, Visit visit) {
-  constexpr std::size_t kCount = std::tuple_size_v<std::remove_const_t<List>>;
-  [&]<std::size_t... k>(std::index_sequence<k...>) {
-    (visit(std::get<kCount - 1 - k>(effects)), ...);
-  }
-  (std::make_index_sequence<kCount>());
-}
-
-/// Channels of particles that begin take their initial values, then effects may change what they are.
-template <class Real>
-void initialize(const Effects& effects, Newcomers<Real>& newcomers) {
-  for_each_effect(effects, [&](const auto& effect) {
-    for (const Channel& channel : effect.channels(newcomers.description)) {
-      Real* const values = newcomers.set.extra[newcomers.set.extra_index(channel.name)].values.data();
-      std::fill(values + newcomers.first, values + newcomers.last, static_cast<Real>(channel.initial));
-    }
-    if (effect.on()) effect.initialize(newcomers);
-  });
 }
 
 }  // namespace repose

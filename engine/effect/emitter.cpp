@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/effect/effect.h"
 #include "engine/geometry/seed_lattice.h"
 
 namespace repose {
@@ -122,7 +123,7 @@ Result<double> share_of_bounds(const Shape& shape, int flat_axis) {
 template <class Real>
 struct Working {
   Stream stream;
-  std::size_t inlet, set;  ///< its places in the ledger and in the state
+  InletPlace place;
   SetDescription description;
   double patience;  ///< s that a particle may wait
 };
@@ -138,14 +139,15 @@ double patience_of(const Emitter& emitter, const Flow& flow, const Surroundings&
 template <class Real>
 class EmitterRuntime {
  public:
-  EmitterRuntime(std::vector<Working<Real>> working, const Assembly<Real>& assembly)
-      : working_(std::move(working)), surroundings_(assembly.surroundings), initialize_(assembly.initialize) {}
+  EmitterRuntime(std::vector<Working<Real>> working, const Surroundings& surroundings,
+                 std::function<void(Newcomers<Real>&)> initialize)
+      : working_(std::move(working)), surroundings_(surroundings), initialize_(std::move(initialize)) {}
 
   bool due(const State<Real>& state, Moment moment) const {
     const double now = state.counters.time;
     return std::any_of(working_.begin(), working_.end(), [&](const Working<Real>& working) {
       const Flow& flow = working.stream.flow();
-      const std::uint64_t made = state.ledger.emitted[working.inlet];
+      const std::uint64_t made = state.ledger.emitted[working.place.entry];
       if (flow.count(now) <= made) return false;
       return moment == Moment::kEndOfFrame || now - flow.crossing(made) >= working.patience;
     });
@@ -154,7 +156,7 @@ class EmitterRuntime {
   /// All that has crossed by now, of all emitters: the order event has to be paid for anyway.
   void run(State<Real>& state, ParticleEdit<Real>& edit) const {
     for (const Working<Real>& working : working_) {
-      std::uint64_t& made = state.ledger.emitted[working.inlet];
+      std::uint64_t& made = state.ledger.emitted[working.place.entry];
       const std::uint64_t all = working.stream.flow().count(state.counters.time);
       if (all > made) emit(working, made, all, state, edit);
       made = std::max(made, all);
@@ -176,7 +178,7 @@ void EmitterRuntime<Real>::emit(const Working<Real>& working, std::uint64_t firs
                                 const State<Real>& state, ParticleEdit<Real>& edit) const {
   const double now = state.counters.time, ramp = surroundings_.gravity_ramp;
   const Vec3 gravity = surroundings_.gravity * (ramp > 0.0 ? std::min(1.0, now / ramp) : 1.0);
-  SetEdit<Real>& added = edit.add(state, working.set, last - first);
+  SetEdit<Real>& added = edit.add(state, working.place.set, last - first);
   ParticleSet<Real>& set = added.newcomers;
   std::vector<Vec3> places(set.count);
   for (std::size_t p = 0; p < set.count; ++p) {
@@ -215,15 +217,14 @@ std::vector<Example> Emitters::examples() {
                "normal": [0, -1, 0], "radius": 0.05, "speed": 1}])"}}};
 }
 
-void Emitters::declare(Fields& fields) {
-  fields.list("emitters", false, "where particles begin during the run", [this](Fields& f) {
+void Emitters::declare(Fields& fields, const SceneOutline& outline) {
+  fields.list("emitters", false, "where particles begin during the run", [&](Fields& f) {
     Emitter emitter;
     describe(f, emitter);
-    const bool taken =
-        std::any_of(list.begin(), list.end(), [&](const Emitter& e) { return e.name == emitter.name; });
-    f.check(!taken, "name", "\"" + emitter.name + "\" is taken by another emitter; choose another");
+    check_name(f, list, emitter, "emitter");
     std::string names;
-    for (const std::string& name : materials) names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    for (const std::string& name : outline.materials) names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    const auto& materials = outline.materials;
     const bool known = std::find(materials.begin(), materials.end(), emitter.material) != materials.end();
     f.check(materials.empty() || known, "material",
             "no material \"" + emitter.material + "\"; choose among " + names);
@@ -233,14 +234,9 @@ void Emitters::declare(Fields& fields) {
 
 std::vector<Inlet> Emitters::inlets() const {
   std::vector<Inlet> inlets;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const Emitter& e = list[k];
-    const bool volume = e.type == Emitter::Type::kVolume;
-    const double speed = (1.0 + e.spread) * (volume ? e.velocity.norm() : e.speed);
-    Bounds mouth;
-    if (!volume) mouth = {e.center, e.center};
-    if (k < shapes_.size() && shapes_[k]) mouth = shapes_[k]->bounds();
-    inlets.push_back({e.name, "emitters", e.material, e.particles_per_cell, speed, mouth});
+  for (const Emitter& e : list) {
+    const double speed = (1.0 + e.spread) * (e.type == Emitter::Type::kVolume ? e.velocity.norm() : e.speed);
+    inlets.push_back({e.name, "emitters", e.material, e.particles_per_cell, speed});
   }
   return inlets;
 }
@@ -253,50 +249,78 @@ double Emitters::particles_by(double time, double spacing, int flat_axis) const 
   return particles;
 }
 
-Result<void> Emitters::prepare(const Surroundings& surroundings) {
-  shapes_.clear();
-  for (const Emitter& emitter : list) {
-    const std::string key = "emitters." + emitter.name;
-    const Flow flow = flow_of(emitter, surroundings.spacing, surroundings.flat_axis);
-    if (const std::string wrong = wrong_with(emitter, flow, surroundings); !wrong.empty())
-      return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
-    shapes_.emplace_back();
-    if (emitter.type != Emitter::Type::kVolume) continue;
-    auto shape = surroundings.shape(emitter.shape, key + ".shape");
-    if (!shape) return shape.error();
-    const auto share = share_of_bounds(**shape, surroundings.flat_axis);
-    if (!share) return Error{share.error().kind, share.error().text(), surroundings.where(key + ".shape")};
-    const Bounds bounds = (*shape)->bounds();
-    const double reach = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
-    if (!(*share > kLeastShare && reach < kMostCells * surroundings.spacing)) {
-      return Error{ErrorKind::kBadScene,
-                   "is endless, too far away, or too thin for places to be drawn in it at random; a box or a "
-                   "sphere will do",
-                   surroundings.where(key + ".shape")};
-    }
-    shapes_.back() = *shape;
-  }
-  return {};
-}
+namespace {
 
 template <class Real>
-void Emitters::add_to_nodes(Assembly<Real>& assembly) const {
-  const Surroundings& around = assembly.surroundings;
-  std::vector<Working<Real>> working;
-  for (std::size_t e = 0; e < list.size(); ++e) {
-    const std::size_t set = assembly.set_of_inlet(e);
-    Stream stream(list[e], shapes_[e], around.spacing, around.flat_axis);
-    const double patience = patience_of(list[e], stream.flow(), around);
-    working.push_back({std::move(stream), assembly.first_inlet + e, set, assembly.sets[set], patience});
-  }
-  const auto runtime = std::make_shared<EmitterRuntime<Real>>(std::move(working), assembly);
-  assembly.plan.events.push_back(
-      {PassMaker<Real>::describe({"emit", "emitters"}, reads(), writes(kParticles)),
-       [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },
-       [runtime](State<Real>& state, ParticleEdit<Real>& edit) { runtime->run(state, edit); }});
-}
+class Sources : public Effect<Real> {
+ public:
+  explicit Sources(const Emitters& emitters) : list_(emitters.list) {}
 
-template void Emitters::add_to_nodes(Assembly<float>&) const;
-template void Emitters::add_to_nodes(Assembly<double>&) const;
+  Result<void> prepare(const Surroundings& surroundings) override {
+    surroundings_ = surroundings;
+    for (const Emitter& emitter : list_) {
+      const std::string key = "emitters." + emitter.name;
+      const Flow flow = flow_of(emitter, surroundings.spacing, surroundings.flat_axis);
+      if (const std::string wrong = wrong_with(emitter, flow, surroundings); !wrong.empty())
+        return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
+      shapes_.emplace_back();
+      if (emitter.type != Emitter::Type::kVolume) continue;
+      auto shape = volume_of(emitter, key + ".shape", surroundings);
+      if (!shape) return shape.error();
+      shapes_.back() = *shape;
+    }
+    return {};
+  }
+
+  Bounds mouths() const override {
+    Bounds all;
+    for (std::size_t k = 0; k < list_.size(); ++k) {
+      const Vec3& center = list_[k].center;
+      const Bounds mouth = shapes_[k] != nullptr ? shapes_[k]->bounds() : Bounds{center, center};
+      all.lower = all.lower.cwiseMin(mouth.lower);
+      all.upper = all.upper.cwiseMax(mouth.upper);
+    }
+    return all;
+  }
+
+  /// An event: when the oldest particle that has crossed has gone about a cell, and at the end of a frame.
+  void add_to(PlanBuilder<Real>& plan) const override {
+    std::vector<Working<Real>> working;
+    for (std::size_t e = 0; e < list_.size(); ++e) {
+      const InletPlace place = plan.inlet(e);
+      Stream stream(list_[e], shapes_[e], surroundings_.spacing, surroundings_.flat_axis);
+      const double patience = patience_of(list_[e], stream.flow(), surroundings_);
+      working.push_back({std::move(stream), place, plan.sets[place.set].description, patience});
+    }
+    plan.events.add(
+        {"emit", "emitters"}, reads(), writes(kParticles),
+        std::make_shared<const EmitterRuntime<Real>>(std::move(working), surroundings_, plan.initialize()));
+  }
+
+ private:
+  /// A solid in which places can be drawn at random.
+  static Result<std::shared_ptr<const Shape>> volume_of(const Emitter& emitter, const std::string& key,
+                                                        const Surroundings& surroundings) {
+    auto shape = surroundings.shape(emitter.shape, key);
+    if (!shape) return shape.error();
+    const auto share = share_of_bounds(**shape, surroundings.flat_axis);
+    if (!share) return Error{share.error().kind, share.error().text(), surroundings.where(key)};
+    const Bounds bounds = (*shape)->bounds();
+    const double reach = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+    if (*share > kLeastShare && reach < kMostCells * surroundings.spacing) return *shape;
+    return Error{ErrorKind::kBadScene,
+                 "is endless, too far away, or too thin for places to be drawn in it at random; a box or a "
+                 "sphere will do",
+                 surroundings.where(key)};
+  }
+
+  std::vector<Emitter> list_;
+  std::vector<std::shared_ptr<const Shape>> shapes_;  // per emitter; null where it has none
+  Surroundings surroundings_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Emitters, Sources)
 
 }  // namespace repose

@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/state/block_extent.h"
+
 namespace repose {
 
 FlowCounts::FlowCounts(std::vector<FlowPlane> planes) : planes_(std::move(planes)) {
@@ -17,27 +19,28 @@ template <class Real>
 void FlowCounts::follow_topology(const State<Real>& state) {
   // Within it a particle is, and moves by a cell at most.
   const double near = radius_of_particles();
-  const auto owners = state.grid.owners();
-  at_origin_.resize(owners.size() * planes_.size());
-  near_.assign(owners.size(), 0);
-  for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-    const Index3 block = state.grid.coordinates_of_owner(owner);
+  const auto occupied_blocks = state.grid.occupied_blocks();
+  at_origin_.resize(occupied_blocks.size() * planes_.size());
+  near_.assign(occupied_blocks.size(), 0);
+  for (std::size_t occupied = 0; occupied < occupied_blocks.size(); ++occupied) {
+    const Index3 block = state.grid.occupied_coordinates(occupied);
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       const FlowPlane& plane = planes_[k];
       const double origin = plane.normal.dot(state.world(block, {0, 0, 0}) - plane.point) / state.spacing;
-      at_origin_[owner * planes_.size() + k] = origin;
-      if (std::abs(origin + 2.0 * plane.normal.sum()) < near) near_[owner] |= std::uint32_t{1} << k;
+      at_origin_[occupied * planes_.size() + k] = origin;
+      if (std::abs(origin + 2.0 * plane.normal.sum()) < near) near_[occupied] |= std::uint32_t{1} << k;
     }
   }
 }
 
 template <class Real>
-std::uint32_t FlowCounts::sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t p) const {
+std::uint32_t FlowCounts::sides(std::size_t occupied, const std::array<const Real*, 3>& x,
+                                std::size_t p) const {
   std::uint32_t sides = 0;
-  for (std::uint32_t rest = near_[owner]; rest != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = near_[occupied]; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
     const Vec3& n = planes_[k].normal;
-    const double distance = at_origin_[owner * planes_.size() + k] + n[0] * double(x[0][p]) +
+    const double distance = at_origin_[occupied * planes_.size() + k] + n[0] * double(x[0][p]) +
                             n[1] * double(x[1][p]) + n[2] * double(x[2][p]);
     if (distance > 0.0) sides |= std::uint32_t{1} << k;
   }
@@ -45,19 +48,19 @@ std::uint32_t FlowCounts::sides(std::size_t owner, const std::array<const Real*,
 }
 
 template <class Real>
-void FlowCounts::note_sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t count,
+void FlowCounts::note_sides(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t count,
                             Real* noted) const {
-  if (near_[owner] == 0) return;
-  for (std::size_t p = 0; p < count; ++p) noted[p] = static_cast<Real>(sides(owner, x, p));
+  if (near_[occupied] == 0) return;
+  for (std::size_t p = 0; p < count; ++p) noted[p] = static_cast<Real>(sides(occupied, x, p));
 }
 
 template <class Real>
-void FlowCounts::count(std::size_t owner, std::size_t set, const std::array<const Real*, 3>& x,
+void FlowCounts::count(std::size_t occupied, std::size_t set, const std::array<const Real*, 3>& x,
                        std::size_t count, const Real* noted) {
-  if (near_[owner] == 0) return;
+  if (near_[occupied] == 0) return;
   const std::size_t sets = crossings_.size() / planes_.size();
   for (std::size_t p = 0; p < count; ++p) {
-    const std::uint32_t now = sides(owner, x, p);
+    const std::uint32_t now = sides(occupied, x, p);
     for (std::uint32_t rest = now ^ static_cast<std::uint32_t>(noted[p]); rest != 0; rest &= rest - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(rest));
       Crossings& crossings = crossings_[k * sets + set];

@@ -6,14 +6,10 @@
 #include <atomic>
 #include <vector>
 
-#include "engine/effect/effect.h"
+#include "engine/effect/probe.h"
+#include "engine/state/state.h"
 
 namespace repose {
-
-struct FlowPlane {
-  Vec3 point{0, 0, 0};   ///< m
-  Vec3 normal{0, 1, 0};  ///< forth is along it, back against it; of any length but zero
-};
 
 class FlowCounts {
  public:
@@ -28,13 +24,14 @@ class FlowCounts {
   /// Which blocks are near which planes; after order events.
   template <class Real>
   void follow_topology(const State<Real>& state);
-  /// Of particles of an owner, at positions in cells from its block's origin: on which sides they are, a bit
-  /// per plane near it, set where the particle is before it, as a whole number.
+  /// Of particles of an occupied block, at positions in cells from its block's origin: on which sides they are,
+  /// a bit per plane near it, set where the particle is before it, as a whole number.
   template <class Real>
-  void note_sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t count, Real* sides) const;
+  void note_sides(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t count,
+                  Real* sides) const;
   /// Counts those of a set that are on other sides than was noted.
   template <class Real>
-  void count(std::size_t owner, std::size_t set, const std::array<const Real*, 3>& x, std::size_t count,
+  void count(std::size_t occupied, std::size_t set, const std::array<const Real*, 3>& x, std::size_t count,
              const Real* sides);
 
   /// Adds what crossed since the last call: particles and kg forth, particles and kg back.
@@ -51,11 +48,11 @@ class FlowCounts {
     std::atomic<std::int64_t> forth{0}, back{0};
   };
   template <class Real>
-  std::uint32_t sides(std::size_t owner, const std::array<const Real*, 3>& x, std::size_t p) const;
+  std::uint32_t sides(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t p) const;
 
   std::vector<FlowPlane> planes_;     // with unit normals
-  std::vector<double> at_origin_;     // per owner and plane: distance of the block's origin, cells
-  std::vector<std::uint32_t> near_;   // per owner: a bit per plane
+  std::vector<double> at_origin_;     // per occupied block and plane: distance of the block's origin, cells
+  std::vector<std::uint32_t> near_;   // per occupied block: a bit per plane
   std::vector<Crossings> crossings_;  // per plane and set
 };
 

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "engine/effect/effect.h"
+#include "engine/effect/near_shape.h"
+
 namespace repose {
 namespace {
 
@@ -52,54 +55,14 @@ void describe(Fields& fields, ForceField& field) {
   fields.check(field.end > field.start, "end", "must come after \"start\"");
 }
 
-/// Whether a block of nodes may hold some of the region.
-template <class Real>
-bool reaches(const ForceField& field, const BlockPlace<Real>& place) {
-  return field.region == nullptr || may_hold_nodes(*field.region, place);
-}
-
-template <class Access>
-void act_on_block(const ForceField& field, const Access& nodes) {
-  if (nodes.time() < field.start || nodes.time() >= field.end) return;
-  const auto place = nodes.place();
-  if (!reaches(field, place)) return;
-  auto* const values = nodes.write(kNodeVelocity);
-  using Real = std::remove_pointer_t<std::remove_const_t<decltype(values)>>;
-  for (std::size_t node = 0; node < kBlockNodes; ++node) {
-    Real* const at = values + node * kNodeValues;
-    if (!(at[0] > Real(0))) continue;
-    const Vec3 x = place.node(node);
-    if (field.region != nullptr && field.region->signed_distance(x) > 0.0) continue;
-    const Vec3 v = in_plane(field.act(x, Vec3(double(at[1]), double(at[2]), double(at[3])), double(nodes.dt())),
-                            place.flat_axis());
-    for (int axis = 0; axis < 3; ++axis) at[1 + axis] = static_cast<Real>(v[axis]);
-  }
-}
-
 }  // namespace
-
-Vec3 ForceField::air(const Vec3& x) const {
-  if (type == Type::kWind) return velocity;
-  if (type == Type::kWindGrid) return scale * values->at(x);
-  const Vec3 along = axis.normalized();
-  const Vec3 out = (x - center) - along * along.dot(x - center);
-  const double far = std::max(1.0, out.squaredNorm() / (radius * radius));
-  return angular_velocity / far * along.cross(out);
-}
-
-Vec3 ForceField::act(const Vec3& x, const Vec3& v, double dt) const {
-  if (type == Type::kUniform) return v + dt * acceleration;
-  if (type == Type::kAccelerationGrid) return v + dt * scale * values->at(x);
-  // dv/dt = drag (u - v) over the step.
-  return v - std::expm1(-drag * dt) * (air(x) - v);
-}
 
 std::vector<Example> ForceFields::examples() {
   return {{"force_fields", {}, {R"(force_fields=[{"name": "wind", "type": "wind", "velocity": [1, 0, 0],
                "shape": {"type": "box", "lower": [-9, -9, -9], "upper": [0.5, 9, 9]}}])"}}};
 }
 
-void ForceFields::declare(Fields& fields) {
+void ForceFields::declare(Fields& fields, const SceneOutline&) {
   fields.list("force_fields", false, "accelerations and winds beside gravity", [this](Fields& f) {
     ForceField field;
     describe(f, field);
@@ -107,41 +70,100 @@ void ForceFields::declare(Fields& fields) {
   });
 }
 
-Result<void> ForceFields::prepare(const Surroundings& surroundings) {
-  for (ForceField& field : list) {
-    if (field.type == ForceField::Type::kAccelerationGrid || field.type == ForceField::Type::kWindGrid) {
-      auto values = VectorGrid::read(field.grid, surroundings.folder, surroundings.allow_outside_paths);
-      if (!values) {
-        return Error{values.error().kind, values.error().text(),
-                     surroundings.where("force_fields." + field.name)};
-      }
-      field.values = *values;
-    }
-    if (!field.bounded) continue;
-    auto shape = surroundings.shape(field.shape, "force_fields." + field.name + ".shape");
-    if (!shape) return shape.error();
-    field.region = *shape;
+namespace {
+
+/// A force field that is ready to act.
+struct ReadyField {
+  ForceField says;
+  std::shared_ptr<const Shape> region;       // null: everywhere
+  std::shared_ptr<const VectorGrid> values;  // of a grid; null for other types
+
+  /// Whether a block of nodes may hold some of the region.
+  template <class Real>
+  bool reaches(const BlockPlace<Real>& place) const {
+    return region == nullptr || may_hold_nodes(*region, place);
   }
-  return {};
-}
+
+  /// Velocity of the air at x, m/s.
+  Vec3 air(const Vec3& x) const {
+    if (says.type == ForceField::Type::kWind) return says.velocity;
+    if (says.type == ForceField::Type::kWindGrid) return says.scale * values->at(x);
+    const Vec3 along = says.axis.normalized();
+    const Vec3 out = (x - says.center) - along * along.dot(x - says.center);
+    const double far = std::max(1.0, out.squaredNorm() / (says.radius * says.radius));
+    return says.angular_velocity / far * along.cross(out);
+  }
+
+  /// What the field makes of a velocity at x in a step of dt.
+  Vec3 act(const Vec3& x, const Vec3& v, double dt) const {
+    if (says.type == ForceField::Type::kUniform) return v + dt * says.acceleration;
+    if (says.type == ForceField::Type::kAccelerationGrid) return v + dt * says.scale * values->at(x);
+    // dv/dt = drag (u - v) over the step.
+    return v - std::expm1(-says.drag * dt) * (air(x) - v);
+  }
+
+  template <class Access>
+  void act_on_block(const Access& nodes) const {
+    if (nodes.time() < says.start || nodes.time() >= says.end) return;
+    const auto place = nodes.place();
+    if (!reaches(place)) return;
+    auto* const all = nodes.write(kNodeVelocity);
+    using Real = std::remove_pointer_t<std::remove_const_t<decltype(all)>>;
+    for (std::size_t node = 0; node < kBlockNodes; ++node) {
+      Real* const at = all + node * kNodeValues;
+      if (!(at[0] > Real(0))) continue;
+      const Vec3 x = place.node(node);
+      if (region != nullptr && region->signed_distance(x) > 0.0) continue;
+      const Vec3 v = in_plane(act(x, Vec3(double(at[1]), double(at[2]), double(at[3])), double(nodes.dt())),
+                              place.flat_axis());
+      for (int axis = 0; axis < 3; ++axis) at[1 + axis] = static_cast<Real>(v[axis]);
+    }
+  }
+};
 
 template <class Real>
-void ForceFields::add_to_nodes(Assembly<Real>& assembly) const {
-  StepPlan<Real>& plan = assembly.plan;
-  for (const ForceField& field : list) {
-    const std::string name = "force field " + field.name;
-    plan.disturbances.push_back(
-        {name, [field](const State<Real>& state, const Index3& block, double from, double to) {
-           const bool changes = within_step(field.start, from, to) || within_step(field.end, from, to);
-           return changes && reaches(field, BlockPlace<Real>(state, block));
-         }});
-    plan.nodes.push_back(plan.passes().over_nodes({name, "force_fields." + field.name}, reads(kNodeVelocity),
-                                                  writes(kNodeVelocity),
-                                                  [field](const auto& at) { act_on_block(field, at); }));
-  }
-}
+class WindsAndAccelerations : public Effect<Real> {
+ public:
+  explicit WindsAndAccelerations(const ForceFields& fields) : list_(fields.list) {}
 
-template void ForceFields::add_to_nodes(Assembly<float>&) const;
-template void ForceFields::add_to_nodes(Assembly<double>&) const;
+  Result<void> prepare(const Surroundings& surroundings) override {
+    for (const ForceField& field : list_) {
+      ReadyField ready{field, nullptr, nullptr};
+      const std::string key = "force_fields." + field.name;
+      if (field.type == ForceField::Type::kAccelerationGrid || field.type == ForceField::Type::kWindGrid) {
+        auto values = VectorGrid::read(field.grid, surroundings.folder, surroundings.allow_outside_paths);
+        if (!values) return Error{values.error().kind, values.error().text(), surroundings.where(key)};
+        ready.values = *values;
+      }
+      if (field.bounded) {
+        auto shape = surroundings.shape(field.shape, key + ".shape");
+        if (!shape) return shape.error();
+        ready.region = *shape;
+      }
+      ready_.push_back(std::move(ready));
+    }
+    return {};
+  }
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    for (const ReadyField& field : ready_) {
+      const std::string name = "force field " + field.says.name;
+      plan.rest.wake(name, [field](const State<Real>& state, const Index3& block, double from, double to) {
+        const bool changes = within_step(field.says.start, from, to) || within_step(field.says.end, from, to);
+        return changes && field.reaches(BlockPlace<Real>(state, block));
+      });
+      plan.forces.add({name, "force_fields." + field.says.name}, reads(kNodeVelocity), writes(kNodeVelocity),
+                      [field](const auto& at) { field.act_on_block(at); });
+    }
+  }
+
+ private:
+  std::vector<ForceField> list_;
+  std::vector<ReadyField> ready_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(ForceFields, WindsAndAccelerations)
 
 }  // namespace repose

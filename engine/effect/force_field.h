@@ -3,11 +3,12 @@
 // step.
 #pragma once
 
-#include <memory>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
+#include "engine/geometry/shape.h"
 #include "engine/geometry/vdb_grid.h"
 
 namespace repose {
@@ -28,30 +29,19 @@ struct ForceField {
   bool bounded = false;  ///< whether `shape` bounds the region
   ShapeDescription shape;
   double start = 0.0, end = std::numeric_limits<double>::infinity();  ///< s
-  std::shared_ptr<const Shape> region;
-  std::shared_ptr<const VectorGrid> values;  ///< of the grid; null for other types
-
-  /// Velocity of the air at x, m/s.
-  Vec3 air(const Vec3& x) const;
-  /// What the field makes of a velocity at x in a step of dt.
-  Vec3 act(const Vec3& x, const Vec3& v, double dt) const;
 };
 
-struct ForceFields : Effect {
+struct ForceFields : EffectDescription {
   static constexpr const char* kName = "force_field";
   static std::vector<Example> examples();
 
   std::vector<ForceField> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
-  std::string why() const {
-    return list.empty() ? "no entry in 'force_fields'" : std::to_string(list.size()) + " in 'force_fields'";
-  }
-  Result<void> prepare(const Surroundings& surroundings);
-
+  std::string why() const { return entries_text(list.size(), "force_fields"); }
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

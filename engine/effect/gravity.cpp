@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include "engine/effect/effect.h"
+#include "kernels/pass/pass.h"
+
 namespace repose {
 
 std::vector<Example> Gravity::examples() {
   return {{"gravity", {"gravity.acceleration=[0, 0, 0]"}, {"gravity.acceleration=[0, -9.81, 0]"}}};
 }
 
-void Gravity::declare(Fields& fields) {
+void Gravity::declare(Fields& fields, const SceneOutline& outline) {
   bool given = false;
   fields.object(
       "gravity", given, false, "a uniform acceleration; it acts also where the key is left out",
@@ -18,29 +21,51 @@ void Gravity::declare(Fields& fields) {
         f.number("ramp", ramp,
                  {.unit = "s", .meaning = "time over which gravity grows linearly from zero", .low = 0.0});
       });
+  // Down follows `up` unless the scene, or a host that filled it, says otherwise.
+  if (outline.z_up && acceleration == Gravity{}.acceleration) acceleration = Vec3(0.0, 0.0, -9.81);
+  fields.check(outline.flat_axis < 0 || acceleration[outline.flat_axis] == 0.0, "gravity",
+               "acceleration must be zero along the flat axis (plane_strain)");
 }
+
+Result<void> Gravity::furnish(Surroundings& surroundings) const {
+  surroundings.gravity = acceleration;
+  surroundings.gravity_ramp = ramp;
+  return {};
+}
+
+namespace {
 
 template <class Real>
-void Gravity::add_to_nodes(Assembly<Real>& assembly) const {
-  StepPlan<Real>& plan = assembly.plan;
-  if (ramp > 0.0) {
-    plan.disturbances.push_back({"gravity", [ramp = ramp](const State<Real>&, const Index3&, double from,
-                                                          double) { return from < ramp; }});
-  }
-  plan.nodes.push_back(plan.passes().over_nodes(
-      {"gravity", "gravity"}, reads(kNodeVelocity), writes(kNodeVelocity),
-      [gravity = *this, kernel = plan.kernels->accelerate](const auto& at) {
-        const double dt = static_cast<double>(at.dt());
-        // The ramp is taken at the end of the step, so that the first step already has some weight.
-        const double share = gravity.ramp > 0.0 ? std::min(1.0, (at.time() + dt) / gravity.ramp) : 1.0;
-        Real change[3];
-        for (int axis = 0; axis < 3; ++axis)
-          change[axis] = static_cast<Real>(dt * share * gravity.acceleration[axis]);
-        kernel(at.write(kNodeVelocity), change);
-      }));
-}
+class UniformGravity : public Effect<Real> {
+ public:
+  explicit UniformGravity(const Gravity& gravity) : gravity_(gravity) {}
 
-template void Gravity::add_to_nodes(Assembly<float>&) const;
-template void Gravity::add_to_nodes(Assembly<double>&) const;
+  /// v += dt g on every active node.
+  void add_to(PlanBuilder<Real>& plan) const override {
+    if (const double ramp = gravity_.ramp; ramp > 0.0) {
+      plan.rest.wake("gravity",
+                     [ramp](const State<Real>&, const Index3&, double from, double) { return from < ramp; });
+    }
+    plan.forces.add({"gravity", "gravity"}, reads(kNodeVelocity), writes(kNodeVelocity),
+                    [gravity = gravity_, kernel = plan.kernels().node.accelerate](const auto& at) {
+                      const double dt = static_cast<double>(at.dt());
+                      // The ramp is taken at the end of the step, so that the first step already has some
+                      // weight.
+                      const double share =
+                          gravity.ramp > 0.0 ? std::min(1.0, (at.time() + dt) / gravity.ramp) : 1.0;
+                      Real change[3];
+                      for (int axis = 0; axis < 3; ++axis)
+                        change[axis] = static_cast<Real>(dt * share * gravity.acceleration[axis]);
+                      kernel(at.write(kNodeVelocity), change);
+                    });
+  }
+
+ private:
+  Gravity gravity_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Gravity, UniformGravity)
 
 }  // namespace repose

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "engine/effect/effect.h"
+#include "kernels/effect/hardening.h"
+
 namespace repose {
 namespace {
 
@@ -20,7 +23,7 @@ std::vector<Example> Hardening::examples() {
   return {{"hardening", {}, {"materials.sand.hardening={}"}}};
 }
 
-void Hardening::declare_in_sand(Fields& fields, const std::string& material) {
+void Hardening::declare_in_cone(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, HardeningParameters& p) {
     f.number(
         "h0", p.h0,
@@ -47,39 +50,45 @@ std::vector<Channel> Hardening::channels(const SetDescription& set) const {
   return p == nullptr ? std::vector<Channel>{} : std::vector<Channel>{{kShear, p->initial}};
 }
 
-template <class Real>
-void Hardening::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
-  const HardeningParameters* p = find(assembly.sets[set]);
-  if (p == nullptr) return;
-  const DruckerPragerParameters& sand = assembly.sets[set].sand();
-  const HardeningConstants<Real> law{static_cast<Real>(p->h0 * kRadians),
-                                     static_cast<Real>(p->h1 * kRadians),
-                                     static_cast<Real>(p->h2),
-                                     static_cast<Real>(p->h3 * kRadians),
-                                     sand.matching,
-                                     static_cast<Real>(sand.cone_of_slope(1.0))};
-  assembly.gather(set).add({"hardening, angle", why()}, reads(kShear, kCone), writes(kCone),
-                           [kernel = assembly.plan.kernels->harden, law](const auto& at) {
-                             kernel(at.read(kShear), law, at.write(kCone), at.count());
-                           });
-}
+namespace {
 
 template <class Real>
-void Hardening::add_after_return(Assembly<Real>& assembly, std::size_t set) const {
-  const HardeningParameters* p = find(assembly.sets[set]);
-  if (p == nullptr) return;
-  assembly.gather(set).add({"hardening, shear", why()}, reads(kShear, kPlastic, kSheared), writes(kShear),
-                           [in_flight = p->in_flight](const auto& at) {
-                             Real* const q = at.write(kShear);
+class HardeningFriction : public Effect<Real> {
+ public:
+  explicit HardeningFriction(const Hardening& hardening) : hardening_(hardening) {}
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.for_each_set_of(hardening_, [&](SetSlots<Real>& set, const HardeningParameters& p) {
+      set.before_return.add(
+          {"hardening, angle", hardening_.why()}, reads(Hardening::kShear, kYieldSlope), writes(kYieldSlope),
+          [kernel = hardening_kernels<Real>(plan.target()).harden, law = law_of(set.description, p)](
+              const auto& at) { kernel(at.read(Hardening::kShear), law, at.write(kYieldSlope), at.count()); });
+      set.after_return.add({"hardening, shear", hardening_.why()}, reads(Hardening::kShear, kPlastic, kSheared),
+                           writes(Hardening::kShear), [in_flight = p.in_flight](const auto& at) {
+                             Real* const q = at.write(Hardening::kShear);
                              // A sum of two arrays: what the compiler makes of it is enough.
                              const Real* const gained = in_flight ? at.read(kPlastic) : at.read(kSheared);
                              for (std::size_t i = 0; i < at.count(); ++i) q[i] += gained[i];
                            });
-}
+    });
+  }
 
-template void Hardening::add_before_return(Assembly<float>&, std::size_t) const;
-template void Hardening::add_before_return(Assembly<double>&, std::size_t) const;
-template void Hardening::add_after_return(Assembly<float>&, std::size_t) const;
-template void Hardening::add_after_return(Assembly<double>&, std::size_t) const;
+ private:
+  static HardeningConstants<Real> law_of(const SetDescription& set, const HardeningParameters& p) {
+    const FrictionalCone& cone = *set.cone();
+    return {static_cast<Real>(p.h0 * kRadians),
+            static_cast<Real>(p.h1 * kRadians),
+            static_cast<Real>(p.h2),
+            static_cast<Real>(p.h3 * kRadians),
+            cone.matching,
+            static_cast<Real>(cone.yield_slope_of(set.elasticity(), 1.0))};
+  }
+
+  Hardening hardening_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Hardening, HardeningFriction)
 
 }  // namespace repose

@@ -2,7 +2,7 @@
 // gains strength, packed sand peaks and softens. The angle of each particle follows its plastic strain.
 #pragma once
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
@@ -18,20 +18,17 @@ struct HardeningParameters {
   double angle(double q) const { return h0 + (h1 * q - h3) * std::exp(-h2 * q); }
 };
 
-struct Hardening : SandEffect<HardeningParameters> {
+struct Hardening : ConeDescription<HardeningParameters> {
   static constexpr const char* kName = "hardening";
   static std::vector<Example> examples();
   /// The channel: q, the sum of the norms of the plastic increments of strain.
   static constexpr Handle<"plastic_shear", Place::kExtra> kShear{};
 
-  void declare_in_sand(Fields& fields, const std::string& material);
+  void declare_in_cone(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
   std::vector<Channel> channels(const SetDescription& set) const;
-
   template <class Real>
-  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
-  template <class Real>
-  void add_after_return(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/effect/effect.h"
+
 namespace repose {
 namespace {
 
@@ -69,7 +71,7 @@ std::string wrong_with(const ManufacturedSolution& solution, const SetDescriptio
       return "the bar's direction must lie in the plane (plane_strain)";
     return "";
   }
-  if (!std::holds_alternative<NeoHookeanParameters>(set.parameters))
+  if (set.law() != "neo_hookean")
     return "is for a body of neo_hookean; change the type of material \"" + set.material + "\"";
   if (around.gravity.norm() > 0.0)
     return "is a solution without gravity; set gravity.acceleration to [0, 0, 0]";
@@ -193,7 +195,7 @@ std::vector<Example> Manufactured::examples() {
        {R"(manufactured={"column": {"type": "axis_aligned", "amplitude": [0.002, 0.002, -0.002]}})"}}};
 }
 
-void Manufactured::declare(Fields& fields) {
+void Manufactured::declare(Fields& fields, const SceneOutline&) {
   fields.dictionary("manufactured", false, "bodies that move as a formula says, by name: to verify with",
                     [this](const std::string& body, Fields& f) {
                       ManufacturedSolution solution;
@@ -211,17 +213,6 @@ std::string Manufactured::why() const {
   return keys.empty() ? "no entry in 'manufactured'" : keys;
 }
 
-Result<void> Manufactured::prepare(const Surroundings& surroundings) {
-  for (const ManufacturedSolution& solution : list) {
-    const std::string key = "manufactured." + solution.body;
-    const SetDescription* body = surroundings.body(solution.body);
-    if (body == nullptr) return surroundings.no_body(solution.body, key);
-    const std::string wrong = wrong_with(solution, *body, surroundings);
-    if (!wrong.empty()) return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
-  }
-  return {};
-}
-
 const ManufacturedSolution* Manufactured::find(const std::string& body) const {
   for (const ManufacturedSolution& solution : list) {
     if (solution.body == body) return &solution;
@@ -235,14 +226,69 @@ std::vector<Channel> Manufactured::channels(const SetDescription& set) const {
   return {{kX}, {kY}, {kZ}};
 }
 
+namespace {
+
 template <class Real>
-void Manufactured::initialize(Newcomers<Real>& newcomers) const {
-  const ManufacturedSolution* solution = find(newcomers.description.name);
+class KnownMotion : public Effect<Real> {
+ public:
+  explicit KnownMotion(const Manufactured& manufactured) : manufactured_(manufactured) {}
+
+  /// Errors, with the key: a body or a material that the solution is not for, gravity where the solution has
+  /// none, motion across the plane of plane strain.
+  Result<void> prepare(const Surroundings& surroundings) override {
+    for (const ManufacturedSolution& solution : manufactured_.list) {
+      const std::string key = "manufactured." + solution.body;
+      const SetDescription* body = surroundings.body(solution.body);
+      if (body == nullptr) return surroundings.no_body(solution.body, key);
+      const std::string wrong = wrong_with(solution, *body, surroundings);
+      if (!wrong.empty()) return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
+    }
+    return {};
+  }
+
+  void initialize(Newcomers<Real>& newcomers) const override;
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    for (SetSlots<Real>& set : plan.sets) {
+      const ManufacturedSolution* solution = manufactured_.find(set.description.name);
+      if (solution == nullptr || !solution->pushes()) continue;
+      push(set, *solution);
+      // Blocks do not know whose particles they hold.
+      plan.rest.wake("manufactured." + solution->body,
+                     [](const State<Real>&, const Index3&, double, double) { return true; });
+    }
+  }
+
+ private:
+  static void push(SetSlots<Real>& set, const ManufacturedSolution& solution) {
+    set.scatter_own_velocity();
+    set.before_scatter.add(
+        {"body force of " + solution.body, "manufactured." + solution.body},
+        reads(kP2gVelocity, Manufactured::kX, Manufactured::kY, Manufactured::kZ), writes(kP2gVelocity),
+        [solution, e = set.description.elasticity()](const auto& at) {
+          const Real *const x = at.read(Manufactured::kX), *const y = at.read(Manufactured::kY),
+                            *const z = at.read(Manufactured::kZ);
+          const auto told = at.write(kP2gVelocity);
+          const double dt = double(at.dt());
+          for (std::size_t p = 0; p < at.count(); ++p) {
+            const Vec3 b = solution.force({double(x[p]), double(y[p]), double(z[p])}, at.time(), e);
+            for (std::size_t i = 0; i < 3; ++i)
+              told[i][p] = static_cast<Real>(double(told[i][p]) + dt * b[static_cast<int>(i)]);
+          }
+        });
+  }
+
+  Manufactured manufactured_;
+};
+
+template <class Real>
+void KnownMotion<Real>::initialize(Newcomers<Real>& newcomers) const {
+  const ManufacturedSolution* solution = manufactured_.find(newcomers.description.name);
   if (solution == nullptr) return;
   ParticleSet<Real>& set = newcomers.set;
   const Elasticity& e = newcomers.description.elasticity();
   const double h = 1e-3 * newcomers.surroundings.spacing;
-  constexpr std::array kReference{kX.kName, kY.kName, kZ.kName};
+  constexpr std::array kReference{Manufactured::kX.kName, Manufactured::kY.kName, Manufactured::kZ.kName};
   for (std::size_t p = newcomers.first; p < newcomers.last; ++p) {
     const Vec3 X = newcomers.position(p) - solution->origin;
     const Vec3 v = solution->velocity(X, e);
@@ -263,43 +309,8 @@ void Manufactured::initialize(Newcomers<Real>& newcomers) const {
   }
 }
 
-template <class Real>
-void Manufactured::add_to_nodes(Assembly<Real>& assembly) const {
-  for (const ManufacturedSolution& solution : list) {
-    if (!solution.pushes()) continue;
-    // Blocks do not know whose particles they hold.
-    assembly.plan.disturbances.push_back(
-        {"manufactured." + solution.body,
-         [](const State<Real>&, const Index3&, double, double) { return true; }});
-  }
-}
+}  // namespace
 
-template <class Real>
-void Manufactured::add_before_scatter(Assembly<Real>& assembly, std::size_t set) const {
-  const ManufacturedSolution* solution = find(assembly.sets[set].name);
-  if (solution == nullptr || !solution->pushes()) return;
-  auto passes = assembly.scatter(set);
-  tell_own_velocity(passes);
-  passes.add({"body force of " + solution->body, "manufactured." + solution->body},
-             reads(kToldVelocity, kX, kY, kZ), writes(kToldVelocity),
-             [solution = *solution, e = assembly.sets[set].elasticity()](const auto& at) {
-               const Real *const x = at.read(kX), *const y = at.read(kY), *const z = at.read(kZ);
-               const auto told = at.write(kToldVelocity);
-               const double dt = double(at.dt());
-               for (std::size_t p = 0; p < at.count(); ++p) {
-                 const Vec3 b = solution.force({double(x[p]), double(y[p]), double(z[p])}, at.time(), e);
-                 for (std::size_t i = 0; i < 3; ++i)
-                   told[i][p] = static_cast<Real>(double(told[i][p]) + dt * b[static_cast<int>(i)]);
-               }
-             });
-}
-
-#define REPOSE_INSTANTIATE(Real)                                   \
-  template void Manufactured::initialize(Newcomers<Real>&) const;  \
-  template void Manufactured::add_to_nodes(Assembly<Real>&) const; \
-  template void Manufactured::add_before_scatter(Assembly<Real>&, std::size_t) const;
-REPOSE_INSTANTIATE(float)
-REPOSE_INSTANTIATE(double)
-#undef REPOSE_INSTANTIATE
+REPOSE_EFFECT(Manufactured, KnownMotion)
 
 }  // namespace repose

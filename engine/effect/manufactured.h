@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
@@ -38,7 +38,7 @@ struct ManufacturedSolution {
   Vec3 force(const Vec3& X, double t, const Elasticity& e) const;
 };
 
-struct Manufactured : Effect {
+struct Manufactured : EffectDescription {
   static constexpr const char* kName = "manufactured";
   static std::vector<Example> examples();
   /// Channels: X, m.
@@ -48,22 +48,15 @@ struct Manufactured : Effect {
 
   std::vector<ManufacturedSolution> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
   std::string why() const;
-  /// Errors, with the key: a body or a material that the solution is not for, gravity where the solution has
-  /// none, motion across the plane of plane strain.
-  Result<void> prepare(const Surroundings& surroundings);
   std::vector<Channel> channels(const SetDescription& set) const;
-  template <class Real>
-  void initialize(Newcomers<Real>& newcomers) const;
-  template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
-  template <class Real>
-  void add_before_scatter(Assembly<Real>& assembly, std::size_t set) const;
 
   /// That of a body; null where it has none.
   const ManufacturedSolution* find(const std::string& body) const;
+  template <class Real>
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

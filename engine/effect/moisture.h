@@ -3,9 +3,8 @@
 // lies in them.
 #pragma once
 
-#include <memory>
-
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
+#include "engine/geometry/shape.h"
 
 namespace repose {
 
@@ -14,7 +13,7 @@ struct MoistureParameters {
   double cohesion_change = 0.0;  ///< Pa, added to the cohesion at w = 1, in proportion below
 };
 
-struct Moisture : SandEffect<MoistureParameters> {
+struct Moisture : ConeDescription<MoistureParameters> {
   static constexpr const char* kName = "moisture";
   static std::vector<Example> examples();
   /// The channel: w.
@@ -26,22 +25,15 @@ struct Moisture : SandEffect<MoistureParameters> {
     ShapeDescription shape;
     double rate = 1.0;                                                  ///< change of w, 1/s
     double start = 0.0, end = std::numeric_limits<double>::infinity();  ///< s
-    std::shared_ptr<const Shape> solid;
   };
   std::vector<Source> sources;
 
-  void declare(Fields& fields);
-  void declare_in_sand(Fields& fields, const std::string& material);
+  void declare(Fields& fields, const SceneOutline& outline);
+  void declare_in_cone(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
-  Result<void> prepare(const Surroundings& surroundings);
   std::vector<Channel> channels(const SetDescription& set) const;
-
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
-  template <class Real>
-  void add_after_motion(Assembly<Real>& assembly, std::size_t set) const;
-  template <class Real>
-  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

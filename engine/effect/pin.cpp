@@ -4,6 +4,9 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/effect/effect.h"
+#include "engine/effect/near_shape.h"
+
 namespace repose {
 namespace {
 
@@ -17,6 +20,16 @@ void describe(Fields& fields, PinDescription& pin) {
   fields.check(pin.end > pin.start, "end", "must be later than \"start\"");
 }
 
+/// A pin that is ready to hold.
+struct ReadyPin {
+  Vec3 velocity;  ///< m/s
+  double start, end;
+  std::shared_ptr<const Shape> shape;
+
+  /// Whether it holds at some time between two (s).
+  bool holds(double from, double to) const { return start < to && end > from; }
+};
+
 /// Of one block: a bit per node, x*16 + y*4 + z, for one pin.
 struct Held {
   std::uint32_t pin;
@@ -26,14 +39,14 @@ struct Held {
 template <class Real>
 class PinnedNodes {
  public:
-  explicit PinnedNodes(std::vector<PinDescription> pins) : pins_(std::move(pins)) {}
+  explicit PinnedNodes(std::vector<ReadyPin> pins) : pins_(std::move(pins)) {}
 
   void follow_topology(const State<Real>& state) {
     begin_.assign(1, 0);
     held_.clear();
     for (const Index3& block : state.grid.blocks()) {
       for (std::uint32_t k = 0; k < pins_.size(); ++k) {
-        if (const std::uint64_t nodes = within({state, block}, *pins_[k].solid)) held_.push_back({k, nodes});
+        if (const std::uint64_t nodes = within({state, block}, *pins_[k].shape)) held_.push_back({k, nodes});
       }
       begin_.push_back(static_cast<std::uint32_t>(held_.size()));
     }
@@ -43,7 +56,7 @@ class PinnedNodes {
   template <class Visit>
   void for_each_held(std::size_t block, const Real* nodes, double time, Visit visit) const {
     for (std::size_t i = begin_[block]; i < begin_[block + 1]; ++i) {
-      const PinDescription& pin = pins_[held_[i].pin];
+      const ReadyPin& pin = pins_[held_[i].pin];
       if (time < pin.start || time >= pin.end) continue;
       for (std::uint64_t rest = held_[i].nodes; rest != 0; rest &= rest - 1) {
         const int node = std::countr_zero(rest);
@@ -67,42 +80,12 @@ class PinnedNodes {
     return nodes;
   }
 
-  std::vector<PinDescription> pins_;
+  std::vector<ReadyPin> pins_;
   std::vector<std::uint32_t> begin_;  // per block, in held_
   std::vector<Held> held_;
 };
 
 constexpr TableHandle<"pinned nodes", PinnedNodes> kPinnedNodes;
-
-template <class Real>
-void add_constraints(StepPlan<Real>& plan) {
-  plan.constraints.push_back(plan.passes().constraints(
-      {"pins", "pins"}, reads(kNodeVelocity, kPinnedNodes),
-      [](const auto& at, std::vector<Constraint<Real>>& constraints) {
-        at.read(kPinnedNodes)
-            .for_each_held(at.block(), at.read(kNodeVelocity), at.time(),
-                           [&](int node, const PinDescription& pin) {
-                             Constraint<Real> constraint;
-                             constraint.node = node;
-                             for (int axis = 0; axis < 3; ++axis)
-                               constraint.velocity[axis] = static_cast<Real>(pin.velocity[axis]);
-                             constraints.push_back(constraint);
-                           });
-      }));
-}
-
-template <class Real>
-void add_hold(StepPlan<Real>& plan) {
-  plan.holds.push_back(plan.passes().over_nodes(
-      {"pins", "pins"}, reads(kNodeVelocity, kPinnedNodes), writes(kNodeVelocity), [](const auto& at) {
-        Real* const nodes = at.write(kNodeVelocity);
-        at.read(kPinnedNodes)
-            .for_each_held(at.block(), nodes, at.time(), [&](int node, const PinDescription& pin) {
-              Real* const v = nodes + node * kNodeValues + 1;
-              for (int axis = 0; axis < 3; ++axis) v[axis] = static_cast<Real>(pin.velocity[axis]);
-            });
-      }));
-}
 
 }  // namespace
 
@@ -112,62 +95,80 @@ std::vector<Example> Pins::examples() {
            {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.1, 1]}}])"}}};
 }
 
-void Pins::declare(Fields& fields) {
-  fields.list("pins", false, "regions whose nodes are held, or drawn along, at a velocity", [this](Fields& f) {
+void Pins::declare(Fields& fields, const SceneOutline&) {
+  fields.list("pins", false, "regions whose nodes are held, or drawn along, at a velocity", [&](Fields& f) {
     PinDescription pin;
     describe(f, pin);
-    const bool taken =
-        std::any_of(list.begin(), list.end(), [&](const PinDescription& p) { return p.name == pin.name; });
-    f.check(!taken, "name", "\"" + pin.name + "\" is taken by another pin; choose another");
+    check_name(f, list, pin, "pin");
     list.push_back(pin);
   });
 }
 
-Result<void> Pins::prepare(const Surroundings& surroundings) {
-  for (PinDescription& pin : list) {
-    auto shape = surroundings.shape(pin.shape, "pins." + pin.name + ".shape");
-    if (!shape) return shape.error();
-    pin.solid = *shape;
-    if (surroundings.flat_axis >= 0 && pin.velocity[surroundings.flat_axis] != 0.0) {
-      return Error{ErrorKind::kBadScene, "must be zero along the flat axis (plane_strain)",
-                   surroundings.where("pins." + pin.name + ".velocity")};
-    }
-  }
-  return {};
-}
-
-double Pins::fastest(double from, double to) const {
-  double most = 0.0;
-  for (const PinDescription& pin : list) {
-    if (pin.start < to && pin.end > from) most = std::max(most, pin.velocity.norm());
-  }
-  return most;
-}
+namespace {
 
 template <class Real>
-void Pins::add_to_nodes(Assembly<Real>& assembly) const {
-  StepPlan<Real>& plan = assembly.plan;
-  plan.tables.template make<Real>(kPinnedNodes, list);
-  plan.order.push_back(
-      plan.passes().after_order({"pinned nodes", "pins"}, reads(kTopology), writes(kPinnedNodes),
-                                [](const auto& at) { at.write(kPinnedNodes).follow_topology(at.state()); }));
-  plan.speeds.push_back([pins = *this](double from, double to) { return pins.fastest(from, to); });
-  plan.disturbances.push_back(
-      {"pins", [pins = list](const State<Real>& state, const Index3& block, double from, double to) {
-         return std::any_of(pins.begin(), pins.end(), [&](const PinDescription& pin) {
-           const bool draws = pin.velocity.norm() > 0.0 && pin.start < to && pin.end > from;
-           const bool changes = within_step(pin.start, from, to) || within_step(pin.end, from, to);
-           return (draws || changes) && may_hold_particles(*pin.solid, state, block);
-         });
-       }});
-  if (plan.implicit) {
-    add_constraints(plan);
-  } else {
-    add_hold(plan);
-  }
-}
+class HeldNodes : public Effect<Real> {
+ public:
+  explicit HeldNodes(const Pins& pins) : list_(pins.list) {}
 
-template void Pins::add_to_nodes(Assembly<float>&) const;
-template void Pins::add_to_nodes(Assembly<double>&) const;
+  Result<void> prepare(const Surroundings& surroundings) override {
+    for (const PinDescription& pin : list_) {
+      const std::string key = "pins." + pin.name;
+      auto shape = surroundings.shape(pin.shape, key + ".shape");
+      if (!shape) return shape.error();
+      pins_.push_back({pin.velocity, pin.start, pin.end, *shape});
+      if (surroundings.flat_axis >= 0 && pin.velocity[surroundings.flat_axis] != 0.0) {
+        return Error{ErrorKind::kBadScene, "must be zero along the flat axis (plane_strain)",
+                     surroundings.where(key + ".velocity")};
+      }
+    }
+    return {};
+  }
+
+  double top_speed(const Bounds&) const override { return fastest(pins_, 0.0, kForEver); }
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.make(kPinnedNodes, pins_);
+    plan.after_order.add({"pinned nodes", "pins"}, reads(kTopology), writes(kPinnedNodes),
+                         [](const auto& at) { at.write(kPinnedNodes).follow_topology(at.state()); });
+    plan.speeds.add([pins = pins_](double from, double to) { return fastest(pins, from, to); });
+    plan.rest.wake("pins",
+                   [pins = pins_](const State<Real>& state, const Index3& block, double from, double to) {
+                     return std::any_of(pins.begin(), pins.end(), [&](const ReadyPin& pin) {
+                       const bool draws = pin.velocity.norm() > 0.0 && pin.holds(from, to);
+                       const bool changes = within_step(pin.start, from, to) || within_step(pin.end, from, to);
+                       return (draws || changes) && may_hold_particles(*pin.shape, state, block);
+                     });
+                   });
+    plan.constraints.add(
+        {"pins", "pins"}, reads(kNodeVelocity, kPinnedNodes),
+        [](const auto& at, std::vector<Constraint<Real>>& constraints) {
+          at.read(kPinnedNodes)
+              .for_each_held(at.block(), at.read(kNodeVelocity), at.time(), [&](int node, const ReadyPin& pin) {
+                Constraint<Real> constraint;
+                constraint.node = node;
+                for (int axis = 0; axis < 3; ++axis)
+                  constraint.velocity[axis] = static_cast<Real>(pin.velocity[axis]);
+                constraints.push_back(constraint);
+              });
+        });
+  }
+
+ private:
+  static double fastest(const std::vector<ReadyPin>& pins, double from, double to) {
+    double most = 0.0;
+    for (const ReadyPin& pin : pins) {
+      if (pin.holds(from, to)) most = std::max(most, pin.velocity.norm());
+    }
+    return most;
+  }
+
+  std::vector<PinDescription> list_;
+  std::vector<ReadyPin> pins_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Pins, HeldNodes)
 
 }  // namespace repose

@@ -3,42 +3,33 @@
 // of it.
 #pragma once
 
-#include <memory>
+#include <string>
+#include <vector>
 
-#include "engine/base/params.h"
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
+#include "engine/geometry/shape.h"
 
 namespace repose {
 
 struct PinDescription {
   std::string name;
   ShapeDescription shape;
-  Vec3 velocity{0, 0, 0};              ///< m/s
-  double start = 0.0, end = 1e9;       ///< s
-  std::shared_ptr<const Shape> solid;  ///< the shape, once the effect is ready
+  Vec3 velocity{0, 0, 0};         ///< m/s
+  double start = 0.0, end = 1e9;  ///< s
 };
 
-struct Pins : Effect {
+struct Pins : EffectDescription {
   static constexpr const char* kName = "pin";
   static std::vector<Example> examples();
 
   std::vector<PinDescription> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
-  std::string why() const {
-    return list.empty() ? "no entry in 'pins'" : std::to_string(list.size()) + " in 'pins'";
-  }
-  Result<void> prepare(const Surroundings& surroundings);
-  double top_speed(const std::vector<Solid>&, const Bounds&) const { return fastest(0.0, kForEver); }
+  std::string why() const { return entries_text(list.size(), "pins"); }
 
-  /// v* of the nodes within the shapes, after forces and before solids, in the order of the list; and which
-  /// nodes those are, after each order event.
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
-
- private:
-  double fastest(double from, double to) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

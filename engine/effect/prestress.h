@@ -2,14 +2,16 @@
 // its weight with a jolt.
 #pragma once
 
-#include <memory>
+#include <limits>
+#include <string>
+#include <vector>
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
 /// Geostatic stress: vertically the weight of what lies above, rho |g| depth; sideways a share of that.
-struct Prestress : Effect {
+struct Prestress : EffectDescription {
   static constexpr const char* kName = "prestress";
   static std::vector<Example> examples();
 
@@ -21,14 +23,11 @@ struct Prestress : Effect {
   };
   std::vector<Entry> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
-  std::string why() const {
-    return list.empty() ? "no entry in 'prestress'" : std::to_string(list.size()) + " in 'prestress'";
-  }
-  Result<void> prepare(const Surroundings& surroundings);
+  std::string why() const { return entries_text(list.size(), "prestress"); }
   template <class Real>
-  void initialize(Newcomers<Real>& newcomers) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/effect/effect.h"
+#include "engine/effect/flow_probe.h"
 #include "engine/effect/particle_energy.h"
+#include "engine/effect/surface_probe.h"
 #include "engine/plan/contact_log.h"
 
 namespace repose {
@@ -70,8 +73,8 @@ void report_force(const ProbeDescription& probe, const double* tallies, std::vec
 }
 
 template <class Real>
-MeasurePass<Real> force_pass(StepPlan<Real>& plan, const ProbeDescription& probe, std::size_t solid) {
-  return plan.passes().measure(name_of(probe), reads(kContactLog), writes(kReport), [&](auto at) {
+void add_force(MeasureSlot<Real>& measures, const ProbeDescription& probe, std::size_t solid) {
+  measures.add(name_of(probe), reads(kContactLog), writes(kReport), [&](auto at) {
     MeasurePass<Real> pass{.tallies = kForceTallies};
     pass.begin_frame = [](const State<Real>&, double* tallies) { std::fill_n(tallies, kForceTallies, 0.0); };
     pass.after_step = [at, solid](const State<Real>&, double dt, double* tallies) {
@@ -90,8 +93,8 @@ MeasurePass<Real> force_pass(StepPlan<Real>& plan, const ProbeDescription& probe
 }
 
 template <class Real>
-MeasurePass<Real> flow_pass(StepPlan<Real>& plan, const ProbeDescription& probe, std::size_t plane) {
-  return plan.passes().measure(name_of(probe), reads(kFlows), writes(kFlows, kReport), [&](auto at) {
+void add_flow(MeasureSlot<Real>& measures, const ProbeDescription& probe, std::size_t plane) {
+  measures.add(name_of(probe), reads(kFlows), writes(kFlows, kReport), [&](auto at) {
     MeasurePass<Real> pass{.tallies = FlowCounts::kTallies};
     pass.begin_frame = [](const State<Real>&, double* tallies) {
       std::fill_n(tallies, FlowCounts::kTallies, 0.0);
@@ -111,8 +114,8 @@ MeasurePass<Real> flow_pass(StepPlan<Real>& plan, const ProbeDescription& probe,
 }
 
 template <class Real>
-MeasurePass<Real> surface_pass(StepPlan<Real>& plan, const ProbeDescription& probe, const Vec3& up) {
-  return plan.passes().measure(name_of(probe), reads(kPosition), writes(kReport), [&](auto) {
+void add_surface(MeasureSlot<Real>& measures, const ProbeDescription& probe, const Vec3& up) {
+  measures.add(name_of(probe), reads(kPosition), writes(kReport), [&](auto) {
     MeasurePass<Real> pass;
     pass.report = [name = probe.name, line = probe.line, up](const State<Real>& state, const double*,
                                                              std::vector<Measurement>& report) {
@@ -136,9 +139,9 @@ struct EnergySum {
     std::array<double, 4> all{};
     for (std::size_t k = 0; k < state.sets.size(); ++k) {
       const ParticleSet<Real>& set = state.sets[k];
-      for (std::size_t owner = 0; owner < state.grid.owners().size(); ++owner) {
-        const Index3& block = state.grid.coordinates_of_owner(owner);
-        for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+      for (std::size_t occupied = 0; occupied < state.grid.occupied_blocks().size(); ++occupied) {
+        const Index3& block = state.grid.occupied_coordinates(occupied);
+        for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
           const Vec3 x = state.world(block, set, p);
           const ParticleEnergy energy = particle_energy(set, p, laws[k], affine_inertia);
           all[0] += energy.kinetic;
@@ -153,35 +156,36 @@ struct EnergySum {
 };
 
 template <class Real>
-MeasurePass<Real> energy_pass(StepPlan<Real>& plan, const ProbeDescription& probe, bool solids,
-                              const EnergySum<Real>& sum) {
+void add_energy(MeasureSlot<Real>& measures, const ProbeDescription& probe, bool solids,
+                const EnergySum<Real>& sum) {
   const auto log = when(solids, kContactLog);
-  return plan.passes().measure(
-      name_of(probe), reads(kPosition, kParticleVelocity, kHenckyStrain, log), writes(kReport), [&](auto at) {
-        MeasurePass<Real> pass{.tallies = 2};  // all that there was; work of solids
-        pass.begin_frame = [sum](const State<Real>& state, double* tallies) {
-          const auto energy = sum(state);
-          tallies[0] = energy[0] + energy[1] + energy[2] + energy[3];
-          tallies[1] = 0.0;
-        };
-        if (solids) {
-          pass.after_step = [at](const State<Real>&, double, double* tallies) {
-            const ContactLog& contacts = at.read(kContactLog);
-            for (std::size_t solid = 0; solid < contacts.solids(); ++solid)
-              tallies[1] += contacts.total(solid).work;
-          };
-        }
-        pass.report = [name = probe.name, sum](const State<Real>& state, const double* tallies,
-                                               std::vector<Measurement>& report) {
-          const auto energy = sum(state);
-          constexpr const char* kNames[] = {"kinetic", "affine", "elastic", "potential"};
-          for (std::size_t k = 0; k < energy.size(); ++k) report.push_back({name, kNames[k], "J", energy[k]});
-          report.push_back({name, "work_of_solids", "J", tallies[1]});
-          const double now = energy[0] + energy[1] + energy[2] + energy[3];
-          report.push_back({name, "dissipated", "J", tallies[0] + tallies[1] - now});
-        };
-        return pass;
-      });
+  measures.add(name_of(probe), reads(kPosition, kParticleVelocity, kHenckyStrain, log), writes(kReport),
+               [&](auto at) {
+                 MeasurePass<Real> pass{.tallies = 2};  // all that there was; work of solids
+                 pass.begin_frame = [sum](const State<Real>& state, double* tallies) {
+                   const auto energy = sum(state);
+                   tallies[0] = energy[0] + energy[1] + energy[2] + energy[3];
+                   tallies[1] = 0.0;
+                 };
+                 if (solids) {
+                   pass.after_step = [at](const State<Real>&, double, double* tallies) {
+                     const ContactLog& contacts = at.read(kContactLog);
+                     for (std::size_t solid = 0; solid < contacts.solids(); ++solid)
+                       tallies[1] += contacts.total(solid).work;
+                   };
+                 }
+                 pass.report = [name = probe.name, sum](const State<Real>& state, const double* tallies,
+                                                        std::vector<Measurement>& report) {
+                   const auto energy = sum(state);
+                   constexpr const char* kNames[] = {"kinetic", "affine", "elastic", "potential"};
+                   for (std::size_t k = 0; k < energy.size(); ++k)
+                     report.push_back({name, kNames[k], "J", energy[k]});
+                   report.push_back({name, "work_of_solids", "J", tallies[1]});
+                   const double now = energy[0] + energy[1] + energy[2] + energy[3];
+                   report.push_back({name, "dissipated", "J", tallies[0] + tallies[1] - now});
+                 };
+                 return pass;
+               });
 }
 
 }  // namespace
@@ -193,109 +197,109 @@ std::vector<Example> Probes::examples() {
            {R"(probes=[{"name": "gate", "type": "flow", "point": [0, 0.3, 0], "normal": [0, 1, 0]}])"}}};
 }
 
-void Probes::declare(Fields& fields) {
+void Probes::declare(Fields& fields, const SceneOutline&) {
   fields.list("probes", false, "figures that are measured and reported per frame", [this](Fields& f) {
     ProbeDescription probe;
     describe(f, probe);
-    const bool taken =
-        std::any_of(list.begin(), list.end(), [&](const ProbeDescription& p) { return p.name == probe.name; });
-    f.check(!taken, "name", "\"" + probe.name + "\" is taken by another probe; choose another");
+    check_name(f, list, probe, "probe");
     list.push_back(probe);
   });
 }
 
-Result<void> Probes::prepare(const Surroundings& surroundings) {
-  std::size_t flows = 0;
-  for (const ProbeDescription& probe : list) {
-    const auto refuse = [&](const std::string& key, const std::string& message) {
-      return Error{ErrorKind::kBadScene, message, surroundings.where("probes." + probe.name + key)};
-    };
-    const auto& solids = surroundings.solids;
-    if (probe.type == Type::kForce && std::find(solids.begin(), solids.end(), probe.collider) == solids.end()) {
-      return refuse(".collider", "no collider is called \"" + probe.collider + "\"; name one of 'colliders'");
-    }
-    if (probe.type == Type::kSurface) {
-      const Vec3 line = probe.line.to - probe.line.from;
-      if (!(line.cross(surroundings.up).norm() > 1e-9))
-        return refuse(".to", "must not lie above or below \"from\"; the line runs along the ground");
-    }
-    if (probe.type == Type::kFlow && ++flows > FlowCounts::kMost)
-      return refuse("", "is one flow too many; a scene may have " + std::to_string(FlowCounts::kMost));
-  }
-  return {};
-}
-
-bool Probes::any(Type type) const {
-  return std::any_of(list.begin(), list.end(),
-                     [type](const ProbeDescription& probe) { return probe.type == type; });
-}
+namespace {
 
 template <class Real>
-void Probes::add_to_nodes(Assembly<Real>& assembly) const {
-  StepPlan<Real>& plan = assembly.plan;
-  const bool solids = !assembly.solids.empty();
-  if (solids && (any(Type::kForce) || any(Type::kEnergy)))
-    plan.tables.template make<Real>(kContactLog, assembly.solids.size());
-  if (any(Type::kFlow)) {
+class Measuring : public Effect<Real> {
+ public:
+  explicit Measuring(const Probes& probes) : list_(probes.list) {}
+
+  /// Errors: 65, a force on a solid that is not there, a line or flows that cannot be measured.
+  Result<void> prepare(const Surroundings& surroundings) override {
+    up_ = surroundings.up;
+    gravity_ = surroundings.gravity;
+    std::size_t flows = 0;
+    for (const ProbeDescription& probe : list_) {
+      const auto refuse = [&](const std::string& key, const std::string& message) {
+        return Error{ErrorKind::kBadScene, message, surroundings.where("probes." + probe.name + key)};
+      };
+      solids_of_.push_back(0);
+      const auto& solids = surroundings.solids;
+      while (solids_of_.back() < solids.size() && solids[solids_of_.back()].name != probe.collider)
+        ++solids_of_.back();
+      if (probe.type == Type::kForce && solids_of_.back() == solids.size())
+        return refuse(".collider", "no collider is called \"" + probe.collider + "\"; name one of 'colliders'");
+      if (probe.type == Type::kSurface) {
+        const Vec3 line = probe.line.to - probe.line.from;
+        if (!(line.cross(surroundings.up).norm() > 1e-9))
+          return refuse(".to", "must not lie above or below \"from\"; the line runs along the ground");
+      }
+      if (probe.type == Type::kFlow && ++flows > FlowCounts::kMost)
+        return refuse("", "is one flow too many; a scene may have " + std::to_string(FlowCounts::kMost));
+    }
+    return {};
+  }
+
+  bool reads_contact_log() const override { return any(Type::kForce) || any(Type::kEnergy); }
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    if (any(Type::kFlow)) follow_flows(plan);
+    const bool solids = plan.find(kContactLog) != nullptr;
+    const double dx = plan.state().spacing;
+    EnergySum<Real> energy{{}, gravity_, dx * dx / plan.transfer().nodes().inverse_d};
+    for (const SetSlots<Real>& set : plan.sets) energy.laws.push_back(set.description.parameters);
+    std::size_t flow = 0;
+    for (std::size_t k = 0; k < list_.size(); ++k) {
+      switch (list_[k].type) {
+        case Type::kForce:
+          add_force(plan.measures, list_[k], solids_of_[k]);
+          break;
+        case Type::kFlow:
+          add_flow(plan.measures, list_[k], flow++);
+          break;
+        case Type::kSurface:
+          add_surface(plan.measures, list_[k], up_);
+          break;
+        case Type::kEnergy:
+          add_energy(plan.measures, list_[k], solids, energy);
+          break;
+      }
+    }
+  }
+
+ private:
+  bool any(Type type) const {
+    return std::any_of(list_.begin(), list_.end(),
+                       [type](const ProbeDescription& probe) { return probe.type == type; });
+  }
+
+  /// On which side of planes particles are, before they move and after.
+  void follow_flows(PlanBuilder<Real>& plan) const {
     std::vector<FlowPlane> planes;
-    for (const ProbeDescription& probe : list) {
+    for (const ProbeDescription& probe : list_) {
       if (probe.type == Type::kFlow) planes.push_back(probe.plane);
     }
-    plan.tables.template make<Real>(kFlows, std::move(planes)).expect_sets(assembly.sets.size());
-    plan.order.push_back(
-        plan.passes().after_order({"blocks near planes of flow", "probes"}, reads(kTopology), writes(kFlows),
-                                  [](const auto& at) { at.write(kFlows).follow_topology(at.state()); }));
-  }
-  EnergySum<Real> energy{{},
-                         assembly.surroundings.gravity,
-                         assembly.state.spacing * assembly.state.spacing / plan.transfer.nodes().inverse_d};
-  for (const SetDescription& set : assembly.sets) energy.laws.push_back(set.parameters);
-  std::size_t flow = 0;
-  for (const ProbeDescription& probe : list) {
-    switch (probe.type) {
-      case Type::kForce: {
-        std::size_t solid = 0;
-        while (assembly.solids[solid].name != probe.collider) ++solid;
-        plan.measures.push_back(force_pass<Real>(plan, probe, solid));
-        break;
-      }
-      case Type::kFlow:
-        plan.measures.push_back(flow_pass<Real>(plan, probe, flow++));
-        break;
-      case Type::kSurface:
-        plan.measures.push_back(surface_pass<Real>(plan, probe, assembly.surroundings.up));
-        break;
-      case Type::kEnergy:
-        plan.measures.push_back(energy_pass<Real>(plan, probe, solids, energy));
-        break;
+    plan.make(kFlows, std::move(planes)).expect_sets(plan.sets.size());
+    plan.after_order.add({"blocks near planes of flow", "probes"}, reads(kTopology), writes(kFlows),
+                         [](const auto& at) { at.write(kFlows).follow_topology(at.state()); });
+    for (SetSlots<Real>& set : plan.sets) {
+      set.before_motion.add(
+          {"sides of planes", "probes"}, reads(kPosition, kFlows), writes(kSides), [](const auto& at) {
+            at.read(kFlows).note_sides(at.occupied(), at.read(kPosition), at.count(), at.write(kSides));
+          });
+      set.after_motion.add(
+          {"count flow", "probes"}, reads(kPosition, kSides), writes(kFlows), [k = set.index](const auto& at) {
+            at.write(kFlows).count(at.occupied(), k, at.read(kPosition), at.count(), at.read(kSides));
+          });
     }
   }
-}
 
-template <class Real>
-void Probes::add_before_motion(Assembly<Real>& assembly, std::size_t set) const {
-  if (!any(Type::kFlow)) return;
-  assembly.gather(set).add(
-      {"sides of planes", "probes"}, reads(kPosition, kFlows), writes(kSides), [](const auto& at) {
-        at.read(kFlows).note_sides(at.owner(), at.read(kPosition), at.count(), at.write(kSides));
-      });
-}
+  std::vector<ProbeDescription> list_;
+  std::vector<std::size_t> solids_of_;  // per probe: the solid that its force acts on
+  Vec3 up_{0, 1, 0}, gravity_{0, 0, 0};
+};
 
-template <class Real>
-void Probes::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
-  if (!any(Type::kFlow)) return;
-  assembly.gather(set).add(
-      {"count flow", "probes"}, reads(kPosition, kSides), writes(kFlows), [set](const auto& at) {
-        at.write(kFlows).count(at.owner(), set, at.read(kPosition), at.count(), at.read(kSides));
-      });
-}
+}  // namespace
 
-#define REPOSE_INSTANTIATE(Real)                                               \
-  template void Probes::add_to_nodes(Assembly<Real>&) const;                   \
-  template void Probes::add_before_motion(Assembly<Real>&, std::size_t) const; \
-  template void Probes::add_after_motion(Assembly<Real>&, std::size_t) const;
-REPOSE_INSTANTIATE(float)
-REPOSE_INSTANTIATE(double)
-#undef REPOSE_INSTANTIATE
+REPOSE_EFFECT(Probes, Measuring)
 
 }  // namespace repose

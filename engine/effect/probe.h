@@ -3,14 +3,24 @@
 // the state, so a frame that was interrupted and resumed reports the same.
 #pragma once
 
-#include <memory>
+#include <string>
+#include <vector>
 
-#include "engine/base/params.h"
-#include "engine/effect/effect.h"
-#include "engine/effect/flow_probe.h"
-#include "engine/effect/surface_probe.h"
+#include "engine/base/vector.h"
+#include "engine/effect/description.h"
 
 namespace repose {
+
+struct FlowPlane {
+  Vec3 point{0, 0, 0};   ///< m
+  Vec3 normal{0, 1, 0};  ///< forth is along it, back against it; of any length but zero
+};
+
+struct SurfaceLine {
+  Vec3 from{0, 0, 0}, to{1, 0, 0};  ///< m; heights along up do not matter
+  double width = 0.0;               ///< m, of the columns across the line; 0: dx
+  std::int64_t samples = 0;         ///< columns from end to end; 0: one each dx
+};
 
 struct ProbeDescription {
   enum class Type { kForce, kFlow, kSurface, kEnergy };
@@ -23,31 +33,18 @@ struct ProbeDescription {
   SurfaceLine line;     // surface
 };
 
-struct Probes : Effect {
+struct Probes : EffectDescription {
   static constexpr const char* kName = "probe";
   static std::vector<Example> examples();
 
   std::vector<ProbeDescription> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
-  std::string why() const {
-    return list.empty() ? "no entry in 'probes'" : std::to_string(list.size()) + " in 'probes'";
-  }
-  /// Errors: 65, a force on a solid that is not there.
-  Result<void> prepare(const Surroundings& surroundings);
+  std::string why() const { return entries_text(list.size(), "probes"); }
 
-  /// The log of contacts for probes of force and energy; what is summed over steps; what each frame reports.
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
-  /// For probes of flow: on which side a particle is, before it moves and after.
-  template <class Real>
-  void add_before_motion(Assembly<Real>& assembly, std::size_t set) const;
-  template <class Real>
-  void add_after_motion(Assembly<Real>& assembly, std::size_t set) const;
-
- private:
-  bool any(ProbeDescription::Type type) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

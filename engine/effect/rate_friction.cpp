@@ -2,13 +2,16 @@
 
 #include <cmath>
 
+#include "engine/effect/effect.h"
+#include "kernels/effect/rate_friction.h"
+
 namespace repose {
 
 std::vector<Example> RateFriction::examples() {
   return {{"rate_friction", {}, {"materials.sand.rate_friction={}"}}};
 }
 
-void RateFriction::declare_in_sand(Fields& fields, const std::string& material) {
+void RateFriction::declare_in_cone(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, RateFrictionParameters& p) {
     f.number("rise", p.rise, {.meaning = "mu_2 - mu_s, what fast shear adds to the friction", .low = 0.0});
     f.number(
@@ -23,23 +26,39 @@ void RateFriction::declare_in_sand(Fields& fields, const std::string& material) 
                 describe);
 }
 
-template <class Real>
-void RateFriction::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
-  const RateFrictionParameters* p = find(assembly.sets[set]);
-  if (p == nullptr) return;
-  const DruckerPragerParameters& sand = assembly.sets[set].sand();
-  const double bulk = sand.elasticity.lambda() + 2.0 / 3.0 * sand.elasticity.mu();
-  const RateConstants<Real> law{
-      static_cast<Real>(sand.cone_of_slope(std::sqrt(2.0) / 3.0 * p->rise)), static_cast<Real>(p->threshold),
-      static_cast<Real>(p->grain_diameter * std::sqrt(2.0 * p->grain_density / bulk))};
-  assembly.gather(set).add({"rate friction", why()}, reads(kTrialStrain, kCohesion, kCone), writes(kCone),
-                           [kernel = assembly.plan.kernels->quicken, law](const auto& at) {
-                             kernel(at.read(kTrialStrain).data(), at.read(kCohesion), law, at.dt(),
-                                    at.write(kCone), at.count());
-                           });
-}
+namespace {
 
-template void RateFriction::add_before_return(Assembly<float>&, std::size_t) const;
-template void RateFriction::add_before_return(Assembly<double>&, std::size_t) const;
+template <class Real>
+class FrictionByRate : public Effect<Real> {
+ public:
+  explicit FrictionByRate(const RateFriction& friction) : friction_(friction) {}
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.for_each_set_of(friction_, [&](SetSlots<Real>& set, const RateFrictionParameters& p) {
+      set.before_return.add({"rate friction", friction_.why()}, reads(kTrialStrain, kCohesion, kYieldSlope),
+                            writes(kYieldSlope),
+                            [kernel = rate_friction_kernels<Real>(plan.target()).strengthen,
+                             law = law_of(set.description, p)](const auto& at) {
+                              kernel(at.read(kTrialStrain).data(), at.read(kCohesion), law, at.dt(),
+                                     at.write(kYieldSlope), at.count());
+                            });
+    });
+  }
+
+ private:
+  static RateConstants<Real> law_of(const SetDescription& set, const RateFrictionParameters& p) {
+    const Elasticity& e = set.elasticity();
+    const double bulk = e.lambda() + 2.0 / 3.0 * e.mu();
+    return {static_cast<Real>(set.cone()->yield_slope_of(e, std::sqrt(2.0) / 3.0 * p.rise)),
+            static_cast<Real>(p.threshold),
+            static_cast<Real>(p.grain_diameter * std::sqrt(2.0 * p.grain_density / bulk))};
+  }
+
+  RateFriction friction_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(RateFriction, FrictionByRate)
 
 }  // namespace repose

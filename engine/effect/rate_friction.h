@@ -4,7 +4,7 @@
 // cone.
 #pragma once
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
@@ -15,15 +15,14 @@ struct RateFrictionParameters {
   double grain_density = 2500.0;  ///< rho_s, kg/m^3
 };
 
-struct RateFriction : SandEffect<RateFrictionParameters> {
+struct RateFriction : ConeDescription<RateFrictionParameters> {
   static constexpr const char* kName = "rate_friction";
   static std::vector<Example> examples();
 
-  void declare_in_sand(Fields& fields, const std::string& material);
+  void declare_in_cone(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
-
   template <class Real>
-  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

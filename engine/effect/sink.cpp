@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/effect/effect.h"
+
 namespace repose {
 namespace {
 
@@ -50,7 +52,7 @@ class SinkRuntime {
   /// Of one block, per set.
   using FoundInBlock = std::vector<std::vector<Found>>;
 
-  void look(const State<Real>& state, std::size_t owner, FoundInBlock& found) const;
+  void look(const State<Real>& state, std::size_t occupied, FoundInBlock& found) const;
 
   std::vector<BuiltSink> sinks_;
   std::size_t first_outlet_;  // where they begin in the ledger
@@ -59,8 +61,8 @@ class SinkRuntime {
 
 /// Particles of a block that lie in sinks; most blocks are far from all.
 template <class Real>
-void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundInBlock& found) const {
-  const Index3 block = state.grid.coordinates_of_owner(owner);
+void SinkRuntime<Real>::look(const State<Real>& state, std::size_t occupied, FoundInBlock& found) const {
+  const Index3 block = state.grid.occupied_coordinates(occupied);
   const double reach = radius_of_particles() * state.spacing;
   const Vec3 middle = in_plane(state.world(block, kMiddleOfParticles), flat_axis_);
   std::vector<std::uint32_t> near;
@@ -72,7 +74,7 @@ void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundI
   found.resize(state.sets.size());
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     const ParticleSet<Real>& set = state.sets[k];
-    for (std::uint32_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+    for (std::uint32_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
       const Vec3 x = in_plane(state.world(block, set, p), flat_axis_);
       const auto in =
           std::find_if(near.begin(), near.end(), [&](std::uint32_t s) { return sinks_[s].distance(x) < 0.0; });
@@ -84,9 +86,9 @@ void SinkRuntime<Real>::look(const State<Real>& state, std::size_t owner, FoundI
 template <class Real>
 void SinkRuntime<Real>::run(State<Real>& state, ParticleEdit<Real>& edit) const {
   state.counters.unseen_motion = 0.0;
-  std::vector<FoundInBlock> blocks(state.grid.owners().size());
+  std::vector<FoundInBlock> blocks(state.grid.occupied_blocks().size());
   edit.threads.for_each(
-      blocks.size(), [&](std::size_t owner) { look(state, owner, blocks[owner]); }, 8);
+      blocks.size(), [&](std::size_t occupied) { look(state, occupied, blocks[occupied]); }, 8);
   for (const FoundInBlock& found : blocks) {
     for (std::size_t k = 0; k < found.size(); ++k) {
       for (const Found& particle : found[k]) {
@@ -106,13 +108,11 @@ std::vector<Example> Sinks::examples() {
        {R"(sinks=[{"name": "drain", "shape": {"type": "box", "lower": [9, 9, 9], "upper": [10, 10, 10]}}])"}}};
 }
 
-void Sinks::declare(Fields& fields) {
+void Sinks::declare(Fields& fields, const SceneOutline&) {
   fields.list("sinks", false, "where particles end", [this](Fields& f) {
     Sink sink;
     describe(f, sink);
-    const bool taken =
-        std::any_of(list.begin(), list.end(), [&](const Sink& s) { return s.name == sink.name; });
-    f.check(!taken, "name", "\"" + sink.name + "\" is taken by another sink; choose another");
+    check_name(f, list, sink, "sink");
     list.push_back(sink);
   });
 }
@@ -123,31 +123,35 @@ std::vector<std::string> Sinks::outlets() const {
   return names;
 }
 
-Result<void> Sinks::prepare(const Surroundings& surroundings) {
-  shapes_.clear();
-  for (const Sink& sink : list) {
-    auto shape = surroundings.shape(sink.shape, "sinks." + sink.name + ".shape");
-    if (!shape) return shape.error();
-    shapes_.push_back(*shape);
-  }
-  return {};
-}
+namespace {
 
 template <class Real>
-void Sinks::add_to_nodes(Assembly<Real>& assembly) const {
-  std::vector<BuiltSink> sinks;
-  for (std::size_t s = 0; s < list.size(); ++s) {
-    sinks.push_back({shapes_[s], list[s].outside, list[s].start, list[s].end});
-  }
-  const auto runtime = std::make_shared<SinkRuntime<Real>>(std::move(sinks), assembly.first_outlet,
-                                                           assembly.surroundings.flat_axis);
-  assembly.plan.events.push_back(
-      {PassMaker<Real>::describe({"sinks", "sinks"}, reads(kPosition), writes(kParticles)),
-       [runtime](const State<Real>& state, Moment moment) { return runtime->due(state, moment); },
-       [runtime](State<Real>& state, ParticleEdit<Real>& edit) { runtime->run(state, edit); }});
-}
+class Drains : public Effect<Real> {
+ public:
+  explicit Drains(const Sinks& sinks) : list_(sinks.list) {}
 
-template void Sinks::add_to_nodes(Assembly<float>&) const;
-template void Sinks::add_to_nodes(Assembly<double>&) const;
+  Result<void> prepare(const Surroundings& surroundings) override {
+    for (const Sink& sink : list_) {
+      auto shape = surroundings.shape(sink.shape, "sinks." + sink.name + ".shape");
+      if (!shape) return shape.error();
+      sinks_.push_back({*shape, sink.outside, sink.start, sink.end});
+    }
+    return {};
+  }
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.events.add({"sinks", "sinks"}, reads(kPosition), writes(kParticles),
+                    std::make_shared<const SinkRuntime<Real>>(sinks_, plan.first_outlet(),
+                                                              plan.state().topology.flat_axis));
+  }
+
+ private:
+  std::vector<Sink> list_;
+  std::vector<BuiltSink> sinks_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Sinks, Drains)
 
 }  // namespace repose

@@ -5,12 +5,11 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "engine/base/params.h"
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
+#include "engine/geometry/shape.h"
 
 namespace repose {
 
@@ -23,28 +22,20 @@ struct Sink {
 };
 
 /// All sinks of a scene, as one effect: a particle that lies in several is counted by the first.
-struct Sinks : Effect {
+struct Sinks : EffectDescription {
   static constexpr const char* kName = "sink";
   static std::vector<Example> examples();
 
   std::vector<Sink> list;
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return !list.empty(); }
-  std::string why() const {
-    return list.empty() ? "no entry in 'sinks'" : std::to_string(list.size()) + " in 'sinks'";
-  }
+  std::string why() const { return entries_text(list.size(), "sinks"); }
 
   std::vector<std::string> outlets() const;
 
-  /// Errors: 65, 66, naming the sink.
-  Result<void> prepare(const Surroundings& surroundings);
-
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
-
- private:
-  std::vector<std::shared_ptr<const Shape>> shapes_;  // per sink
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

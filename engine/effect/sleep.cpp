@@ -2,13 +2,15 @@
 
 #include <cmath>
 
+#include "engine/effect/effect.h"
+
 namespace repose {
 
 std::vector<Example> Sleep::examples() {
   return {{"sleep (awake)", {}, {"sleep={}"}}};
 }
 
-void Sleep::declare(Fields& fields) {
+void Sleep::declare(Fields& fields, const SceneOutline&) {
   fields.object(
       "sleep", enabled, false, "blocks whose sand rests are left out until something wakes them",
       [this](Fields& f) {
@@ -32,25 +34,31 @@ void Sleep::declare(Fields& fields) {
       });
 }
 
-template <class Real>
-void Sleep::add_to_nodes(Assembly<Real>& assembly) const {
-  const double dx = assembly.surroundings.spacing;
-  const double natural = 0.1 * std::sqrt(assembly.surroundings.gravity.norm() * dx);
-  SleepRule rule;
-  rule.speed = speed > 0.0 ? speed : natural;
-  rule.wake_speed = wake_speed > 0.0 ? wake_speed : 2.0 * rule.speed;
-  rule.after = after;
-  rule.way = way * dx;
-  assembly.plan.sleep = rule;
-  assembly.plan.tables.template make<Real>(kDrift);
-}
+namespace {
 
-/// Every eighth particle: enough for a mean.
 template <class Real>
-void Sleep::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
-  assembly.gather(set).add({"drift of blocks", "sleep"}, reads(kParticleVelocity), writes(kDrift),
+class SleepOfBlocks : public Effect<Real> {
+ public:
+  explicit SleepOfBlocks(const Sleep& sleep) : sleep_(sleep) {}
+
+  Result<void> prepare(const Surroundings& surroundings) override {
+    const double dx = surroundings.spacing;
+    const double natural = 0.1 * std::sqrt(surroundings.gravity.norm() * dx);
+    rule_.speed = sleep_.speed > 0.0 ? sleep_.speed : natural;
+    rule_.wake_speed = sleep_.wake_speed > 0.0 ? sleep_.wake_speed : 2.0 * rule_.speed;
+    rule_.after = sleep_.after;
+    rule_.way = sleep_.way * dx;
+    return {};
+  }
+
+  /// How blocks drift, by which it is decided whether they rest: every eighth particle, enough for a mean.
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.rest.sleep_by(rule_);
+    plan.make(kDrift);
+    for (SetSlots<Real>& set : plan.sets) {
+      set.after_motion.add({"drift of blocks", "sleep"}, reads(kParticleVelocity), writes(kDrift),
                            [](const auto& at) {
-                             Drift::Sum& sum = at.write(kDrift).sums[at.owner()];
+                             Drift::Sum& sum = at.write(kDrift).sums[at.occupied()];
                              const auto v = at.read(kParticleVelocity);
                              for (std::size_t p = 0; p < at.count(); p += 8) {
                                for (std::size_t axis = 0; axis < 3; ++axis)
@@ -58,11 +66,16 @@ void Sleep::add_after_motion(Assembly<Real>& assembly, std::size_t set) const {
                                sum.samples += 1.0;
                              }
                            });
-}
+    }
+  }
 
-template void Sleep::add_to_nodes(Assembly<float>&) const;
-template void Sleep::add_to_nodes(Assembly<double>&) const;
-template void Sleep::add_after_motion(Assembly<float>&, std::size_t) const;
-template void Sleep::add_after_motion(Assembly<double>&, std::size_t) const;
+ private:
+  Sleep sleep_;
+  SleepRule rule_;
+};
+
+}  // namespace
+
+REPOSE_EFFECT(Sleep, SleepOfBlocks)
 
 }  // namespace repose

@@ -2,11 +2,11 @@
 // rule and its error stand in engine/sweep/active_blocks.h; without the key nothing ever sleeps.
 #pragma once
 
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
-struct Sleep : Effect {
+struct Sleep : EffectDescription {
   static constexpr const char* kName = "sleep";
   static std::vector<Example> examples();
 
@@ -16,16 +16,12 @@ struct Sleep : Effect {
   double wake_speed = 0.0;  ///< m/s; 0: twice `speed`
   double way = 0.01;        ///< cells
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return enabled; }
   const char* explicit_only() const { return kName; }
   std::string why() const { return enabled ? "key 'sleep'" : "no key 'sleep'"; }
-
   template <class Real>
-  void add_to_nodes(Assembly<Real>& assembly) const;
-  /// How blocks drift, by which it is decided whether they rest.
-  template <class Real>
-  void add_after_motion(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

@@ -4,15 +4,10 @@
 
 #include <vector>
 
+#include "engine/effect/probe.h"
 #include "engine/state/state.h"
 
 namespace repose {
-
-struct SurfaceLine {
-  Vec3 from{0, 0, 0}, to{1, 0, 0};  ///< m; heights along up do not matter
-  double width = 0.0;               ///< m, of the columns across the line; 0: dx
-  std::int64_t samples = 0;         ///< columns from end to end; 0: one each dx
-};
 
 /// How many columns a line has.
 std::size_t columns(const SurfaceLine& line, const Vec3& up, double spacing);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/effect/effect.h"
+
 namespace repose {
 namespace {
 
@@ -49,7 +51,7 @@ std::vector<Example> Variation::examples() {
   return {{"variation", {}, {R"(materials.sand.variation={"friction": 0.2})"}}};
 }
 
-void Variation::declare_in_sand(Fields& fields, const std::string& material) {
+void Variation::declare_in_cone(Fields& fields, const std::string& material) {
   const auto describe = [](Fields& f, VariationParameters& p) {
     f.number("friction", p.friction,
              {.meaning = "the cone's slope varies by this share to either side", .low = 0.0, .high = 1.0});
@@ -69,9 +71,76 @@ void Variation::declare_in_sand(Fields& fields, const std::string& material) {
                 describe);
 }
 
-Result<void> Variation::prepare(const Surroundings& surroundings) {
-  const auto read = [&](const VdbDescription& grid, const std::string& key,
-                        std::shared_ptr<const ScalarGrid>& values) -> Result<void> {
+std::vector<Channel> Variation::channels(const SetDescription& set) const {
+  const VariationParameters* p = find(set);
+  std::vector<Channel> channels;
+  if (p != nullptr && p->varies_friction()) channels.push_back({kFrictionFactor, 1.0});
+  if (p != nullptr && p->varies_cohesion()) channels.push_back({kCohesionFactor, 1.0});
+  return channels;
+}
+
+namespace {
+
+template <class Real>
+class PatchesOfSand : public Effect<Real> {
+ public:
+  explicit PatchesOfSand(const Variation& variation) : variation_(variation) {}
+
+  /// Errors: those of ScalarGrid::read, and 65, a factor below 0; with the key.
+  Result<void> prepare(const Surroundings& surroundings) override {
+    for (const Variation::Entry& entry : variation_.entries) {
+      const std::string key = "materials." + entry.material + "." + Variation::kName;
+      Grids grids;
+      const VariationParameters& p = entry.parameters;
+      if (auto ready = read(surroundings, p.friction_grid, key + ".friction_grid", grids.friction); !ready)
+        return ready;
+      if (auto ready = read(surroundings, p.cohesion_grid, key + ".cohesion_grid", grids.cohesion); !ready)
+        return ready;
+      grids_.push_back(std::move(grids));
+    }
+    return {};
+  }
+
+  void initialize(Newcomers<Real>& newcomers) const override {
+    const VariationParameters* p = variation_.find(newcomers.description);
+    if (p == nullptr) return;
+    const Grids& grids = grids_of(*p);
+    const auto seed = static_cast<std::uint64_t>(p->seed);
+    const auto fill = [&](Real* factor, double share, std::uint64_t of, const ScalarGrid* grid) {
+      for (std::size_t i = newcomers.first; i < newcomers.last; ++i) {
+        const Vec3 x = newcomers.position(i);
+        const double smooth = share > 0.0 ? 1.0 + share * noise(x / p->length, of) : 1.0;
+        factor[i] = static_cast<Real>(grid == nullptr ? smooth : smooth * grid->at(x));
+      }
+    };
+    if (p->varies_friction())
+      fill(newcomers.channel(Variation::kFrictionFactor), p->friction, 2 * seed, grids.friction.get());
+    if (p->varies_cohesion())
+      fill(newcomers.channel(Variation::kCohesionFactor), p->cohesion, 2 * seed + 1, grids.cohesion.get());
+  }
+
+  void add_to(PlanBuilder<Real>& plan) const override {
+    plan.for_each_set_of(variation_, [&](SetSlots<Real>& set, const VariationParameters& p) {
+      const auto add = [&](auto factor, auto quantity) {
+        set.before_return.add({std::string("variation of ") + decltype(quantity)::kName, variation_.why()},
+                              reads(factor, quantity), writes(quantity), [factor, quantity](const auto& at) {
+                                const Real* const factors = at.read(factor);
+                                Real* const values = at.write(quantity);
+                                for (std::size_t i = 0; i < at.count(); ++i) values[i] *= factors[i];
+                              });
+      };
+      if (p.varies_friction()) add(Variation::kFrictionFactor, kYieldSlope);
+      if (p.varies_cohesion()) add(Variation::kCohesionFactor, kCohesion);
+    });
+  }
+
+ private:
+  struct Grids {
+    std::shared_ptr<const ScalarGrid> friction, cohesion;  // null where there is none
+  };
+
+  static Result<void> read(const Surroundings& surroundings, const VdbDescription& grid, const std::string& key,
+                           std::shared_ptr<const ScalarGrid>& values) {
     if (!grid.given) return {};
     const auto made = ScalarGrid::read(grid, surroundings.folder, surroundings.allow_outside_paths);
     if (!made) return Error{made.error().kind, made.error().text(), surroundings.where(key)};
@@ -83,61 +152,20 @@ Result<void> Variation::prepare(const Surroundings& surroundings) {
     }
     values = *made;
     return {};
-  };
-  for (Entry& entry : entries) {
-    const std::string key = "materials." + entry.material + "." + kName;
-    VariationParameters& p = entry.parameters;
-    if (auto ready = read(p.friction_grid, key + ".friction_grid", p.of_friction); !ready) return ready;
-    if (auto ready = read(p.cohesion_grid, key + ".cohesion_grid", p.of_cohesion); !ready) return ready;
   }
-  return {};
-}
 
-std::vector<Channel> Variation::channels(const SetDescription& set) const {
-  const VariationParameters* p = find(set);
-  std::vector<Channel> channels;
-  if (p != nullptr && p->varies_friction()) channels.push_back({kFrictionFactor, 1.0});
-  if (p != nullptr && p->varies_cohesion()) channels.push_back({kCohesionFactor, 1.0});
-  return channels;
-}
+  const Grids& grids_of(const VariationParameters& p) const {
+    std::size_t k = 0;
+    while (&variation_.entries[k].parameters != &p) ++k;
+    return grids_[k];
+  }
 
-template <class Real>
-void Variation::initialize(Newcomers<Real>& newcomers) const {
-  const VariationParameters* p = find(newcomers.description);
-  if (p == nullptr) return;
-  const auto seed = static_cast<std::uint64_t>(p->seed);
-  const auto fill = [&](const char* channel, double share, std::uint64_t of, const ScalarGrid* grid) {
-    Real* const factor = newcomers.set.extra[newcomers.set.extra_index(channel)].values.data();
-    for (std::size_t i = newcomers.first; i < newcomers.last; ++i) {
-      const Vec3 x = newcomers.position(i);
-      const double smooth = share > 0.0 ? 1.0 + share * noise(x / p->length, of) : 1.0;
-      factor[i] = static_cast<Real>(grid == nullptr ? smooth : smooth * grid->at(x));
-    }
-  };
-  if (p->varies_friction()) fill(kFrictionFactor.kName, p->friction, 2 * seed, p->of_friction.get());
-  if (p->varies_cohesion()) fill(kCohesionFactor.kName, p->cohesion, 2 * seed + 1, p->of_cohesion.get());
-}
+  Variation variation_;
+  std::vector<Grids> grids_;  // in the order of the entries
+};
 
-template <class Real>
-void Variation::add_before_return(Assembly<Real>& assembly, std::size_t set) const {
-  const VariationParameters* p = find(assembly.sets[set]);
-  if (p == nullptr) return;
-  auto passes = assembly.gather(set);
-  const auto add = [&](auto factor, auto quantity) {
-    passes.add({std::string("variation of ") + decltype(quantity)::kName, why()}, reads(factor, quantity),
-               writes(quantity), [factor, quantity](const auto& at) {
-                 const Real* const factors = at.read(factor);
-                 Real* const values = at.write(quantity);
-                 for (std::size_t i = 0; i < at.count(); ++i) values[i] *= factors[i];
-               });
-  };
-  if (p->varies_friction()) add(kFrictionFactor, kCone);
-  if (p->varies_cohesion()) add(kCohesionFactor, kCohesion);
-}
+}  // namespace
 
-template void Variation::initialize(Newcomers<float>&) const;
-template void Variation::initialize(Newcomers<double>&) const;
-template void Variation::add_before_return(Assembly<float>&, std::size_t) const;
-template void Variation::add_before_return(Assembly<double>&, std::size_t) const;
+REPOSE_EFFECT(Variation, PatchesOfSand)
 
 }  // namespace repose

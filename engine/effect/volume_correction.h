@@ -4,29 +4,25 @@
 // flight.
 #pragma once
 
-#include "engine/base/params.h"
-#include "engine/effect/effect.h"
+#include "engine/effect/description.h"
 
 namespace repose {
 
-struct VolumeCorrection : Effect {
+struct VolumeCorrection : EffectDescription {
   static constexpr const char* kName = "volume_correction";
   static std::vector<Example> examples();
-  /// The channel that remembers: log volume gained per particle.
-
   bool enabled = false;  ///< set by the presence of the scene key
 
-  void declare(Fields& fields);
+  void declare(Fields& fields, const SceneOutline& outline);
   bool on() const { return enabled; }
   std::string why() const { return enabled ? "key 'volume_correction'" : "no key 'volume_correction'"; }
 
+  /// Of sand: a cone has a tip, at which the law forgets volume.
   std::vector<Channel> channels(const SetDescription& set) const {
-    return enabled && set.yields() ? std::vector<Channel>{{kVolumeGained}} : std::vector<Channel>{};
+    return enabled && set.cone() != nullptr ? std::vector<Channel>{{kVolumeGained}} : std::vector<Channel>{};
   }
   template <class Real>
-  void add_before_return(Assembly<Real>& assembly, std::size_t set) const;
-  template <class Real>
-  void add_after_return(Assembly<Real>& assembly, std::size_t set) const;
+  EffectResult<Real> make(const Surroundings& surroundings) const;
 };
 
 }  // namespace repose

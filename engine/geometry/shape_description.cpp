@@ -63,7 +63,7 @@ void describe_revolution(Fields& fields, ShapeDescription& shape) {
 }
 
 void describe_mesh(Fields& fields, ShapeDescription& shape) {
-  fields.text("file", shape.file, "a closed triangle mesh, .obj or .ply, relative to the scene's folder", true);
+  fields.file("file", shape.file, "a closed triangle mesh, .obj or .ply, relative to the scene's folder", true);
   fields.number("scale", shape.scale, {.meaning = "metres per unit of the mesh", .low = 0, .low_open = true});
 }
 

@@ -127,7 +127,7 @@ class VectorValues : public VectorGrid {
 }  // namespace
 
 void describe_vdb(Fields& fields, VdbDescription& grid, const char* values) {
-  fields.text("file", grid.file, "a VDB file, relative to the scene's folder", true);
+  fields.file("file", grid.file, "a VDB file, relative to the scene's folder", true);
   fields.text("grid", grid.name, values, true);
 }
 

@@ -77,7 +77,7 @@ void ContactSet<Real>::span(Node& node) {
     ++node.rank;
   };
   for (std::size_t k = 0; k < node.contacts.size(); ++k) {
-    const Constraint<Real>& hold = node.contacts[k].hold;
+    const Constraint<Real>& hold = node.contacts[k].constraint;
     if (!node.contacts[k].active) continue;
     if (hold.contact != Contact::kSticky) {
       add(normal_of(hold), hold.bound, static_cast<int>(k));
@@ -92,7 +92,7 @@ void ContactSet<Real>::span(Node& node) {
 template <class Real>
 void ContactSet<Real>::share_out(Node& node) {
   for (Listed& contact : node.contacts)
-    contact.push = contact.active ? normal_of(contact.hold).dot(node.reaction) : Real(0);
+    contact.push = contact.active ? normal_of(contact.constraint).dot(node.reaction) : Real(0);
   Vector3 rest = node.reaction;
   for (int k = node.rank - 1; k >= 0; --k) {
     const Real push = node.axis[k].dot(rest) / node.axis[k].dot(node.normal[k]);
@@ -102,7 +102,7 @@ void ContactSet<Real>::share_out(Node& node) {
 }
 
 template <class Real>
-void ContactSet<Real>::obey(std::size_t block, Real* v) const {
+void ContactSet<Real>::apply(std::size_t block, Real* v) const {
   for (const Node& node : nodes_[block]) {
     auto at = at_node(v, node.index);
     for (int k = 0; k < node.rank; ++k) at += (node.value[k] - node.axis[k].dot(at)) * node.axis[k];
@@ -132,7 +132,7 @@ Real ContactSet<Real>::friction_bound(const Node& node, std::size_t k) {
   const auto& [law, hold, active, push] = node.contacts[k];
   if (!active || !(hold.friction > Real(0))) return Real(0);
   for (std::size_t before = 0; before < k; ++before) {
-    const bool same = normal_of(node.contacts[before].hold).dot(normal_of(hold)) > Real(kAlike);
+    const bool same = normal_of(node.contacts[before].constraint).dot(normal_of(hold)) > Real(kAlike);
     if (same && node.contacts[before].active) return Real(0);
   }
   return hold.friction * (hold.contact == Contact::kSeparating ? std::max(push, Real(0)) : std::abs(push));
@@ -156,7 +156,7 @@ const Constraint<Real>* ContactSet<Real>::rough(const Node& node) {
     const Real bound = friction_bound(node, k);
     if (!(bound > most)) continue;
     most = bound;
-    roughest = &node.contacts[k].hold;
+    roughest = &node.contacts[k].constraint;
   }
   return roughest;
 }
@@ -169,7 +169,7 @@ typename ContactSet<Real>::Vector3 ContactSet<Real>::slip(const Node& node, cons
 }
 
 template <class Real>
-void ContactSet<Real>::bear(std::size_t block, const Real* nodes, const Real* v, Real* r, Real* left) {
+void ContactSet<Real>::react(std::size_t block, const Real* nodes, const Real* v, Real* r, Real* left) {
   for (Node& node : nodes_[block]) {
     auto at = at_node(r, node.index), counts = at_node(left, node.index);
     const Vector3 asked = along_walls(node, at);
@@ -224,9 +224,9 @@ void ContactSet<Real>::precondition(std::size_t block, Real* z) const {
 }
 
 template <class Real>
-void ContactSet<Real>::release(std::size_t block) {
+void ContactSet<Real>::release_all(std::size_t block) {
   for (Node& node : nodes_[block]) {
-    for (Listed& contact : node.contacts) contact.active = contact.hold.contact != Contact::kSeparating;
+    for (Listed& contact : node.contacts) contact.active = contact.constraint.contact != Contact::kSeparating;
     span(node);
   }
 }
@@ -253,7 +253,7 @@ int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
 }
 
 template <class Real>
-int ContactSet<Real>::let_go(std::size_t block) {
+int ContactSet<Real>::release(std::size_t block) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;

@@ -29,14 +29,14 @@ class ContactSet {
   void set_block(std::size_t block, const std::vector<Constraint<Real>>& constraints, const Real* begin);
 
   /// Velocities of a block's nodes: brought to what their holds prescribe.
-  void obey(std::size_t block, Real* v) const;
+  void apply(std::size_t block, Real* v) const;
   /// Takes from a vector all that lies along directions that are held.
   void project(std::size_t block, Real* x) const;
 
   /// Of the residual r without contacts, at the velocities v: takes what holds bear, adds friction, and keeps
   /// the impulse J of both. In `left` it puts what of r counts, which is nothing where a node sticks as long as
   /// friction can bear what it is asked to. `nodes` have the masses.
-  void bear(std::size_t block, const Real* nodes, const Real* v, Real* r, Real* left);
+  void react(std::size_t block, const Real* nodes, const Real* v, Real* r, Real* left);
   /// Calls visit(node, J) for the nodes that are held.
   template <class Visit>
   void for_each_reaction(std::size_t block, Visit visit) const {
@@ -59,11 +59,11 @@ class ContactSet {
   }
 
   /// Lets all contacts go that only push.
-  void release(std::size_t block);
+  void release_all(std::size_t block);
   /// Takes up contacts that v passes. Returns how many changed.
   int take_up(std::size_t block, const Real* v);
   /// Lets contacts go that pulled when v was evaluated last.
-  int let_go(std::size_t block);
+  int release(std::size_t block);
   /// Stops nodes that slip in v, evaluated last with the residual r, where friction would stop each by itself.
   /// Returns how many.
   int stop_held(std::size_t block, const Real* nodes, const Real* r, Real* v) const;
@@ -85,8 +85,8 @@ class ContactSet {
 
  private:
   struct Listed {
-    Constraint<Real> law;   // as it was listed
-    Constraint<Real> hold;  // of changes of velocity
+    Constraint<Real> law;         // as it was listed
+    Constraint<Real> constraint;  // of changes of velocity
     bool active = false;
     Real push = 0;  // its part of J along its normal, N s
   };

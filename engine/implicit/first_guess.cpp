@@ -83,10 +83,10 @@ void FirstGuess<Real>::place(Kind kind, Vector& dv) {
         free[k] = nodes[k] - begin[k];
       }
     }
-    contacts_.release(b);
+    contacts_.release_all(b);
     contacts_.take_up(b, to);
     contacts_.take_up(b, free);
-    contacts_.obey(b, to);
+    contacts_.apply(b, to);
   });
 }
 
@@ -105,7 +105,7 @@ bool FirstGuess<Real>::foresee_contacts(Vector& dv) {
     }
     const int stopped = contacts_.stop_held(b, nodes, r, to);
     const int taken = contacts_.take_up(b, next);
-    contacts_.obey(b, to);
+    contacts_.apply(b, to);
     return std::array{static_cast<double>(stopped + taken)};
   });
   return found > 0.0;

@@ -120,10 +120,10 @@ bool ImplicitStep<Real>::change_contacts(Vector& v) {
     if (!contacts_.any(b)) return std::array{0.0};
     // In this order: a contact that was let go has its node on the wall still.
     const int taken = contacts_.take_up(b, v.block(b));
-    return std::array{static_cast<double>(taken + contacts_.let_go(b))};
+    return std::array{static_cast<double>(taken + contacts_.release(b))};
   });
   if (changes == 0.0) return false;
-  sweep_.for_each_block([&](std::size_t b) { contacts_.obey(b, v.block(b)); });
+  sweep_.for_each_block([&](std::size_t b) { contacts_.apply(b, v.block(b)); });
   return true;
 }
 

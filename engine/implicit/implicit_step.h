@@ -6,17 +6,11 @@
 
 #include "engine/base/profile.h"
 #include "engine/implicit/first_guess.h"
+#include "engine/implicit/implicit_report.h"
 #include "engine/solve/linear_solve.h"
 #include "engine/solve/newton.h"
 
 namespace repose {
-
-/// What a solve came to.
-struct ImplicitReport {
-  NewtonReport newton;        ///< with |r| in kg^1/2 m/s
-  std::int64_t unknowns = 0;  ///< velocity components that were solved for, with the contacts at the end
-  SolveStatus linear = SolveStatus::kConverged;  ///< of the last linear solve that failed, if any did
-};
 
 template <class Real>
 class ImplicitStep {

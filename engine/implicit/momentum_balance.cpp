@@ -85,7 +85,7 @@ std::array<double, 3> MomentumBalance<Real>::finish_block(std::size_t block, con
   }
   Real left[kBlockValues];
   std::copy_n(r, kBlockValues, left);
-  contacts_.bear(block, nodes, dv, r, left);
+  contacts_.react(block, nodes, dv, r, left);
   for (Real* const vector : {outer, inner}) contacts_.project(block, vector);
   std::array<double, 3> squares{};
   for (std::size_t at = 0; at < kBlockValues; at += kNodeValues) {
@@ -100,15 +100,15 @@ std::array<double, 3> MomentumBalance<Real>::finish_block(std::size_t block, con
 
 template <class Real>
 double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
-  const bool resolves = particles_.resolves();
-  sweep_.over_particles({.to = resolves ? &residual_ : nullptr},
+  const bool models = particles_.models();
+  sweep_.over_particles({.to = models ? &residual_ : nullptr},
                         [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
                           particles_.linearize(set, chunk, own, near);
-                          if (resolves) sweep_.push(chunk, own, push_scale(chunk));
+                          if (models) sweep_.push(chunk, own, push_scale(chunk));
                         });
   particles_.end_linearize();
   double norm = norm_;
-  if (resolves) {
+  if (models) {
     const auto [sum, outer, inner] = finish_residual(dv);
     norm = std::sqrt(sum);
   }
@@ -120,14 +120,14 @@ double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
 /// Each particle's own bound, from the gradient there and its change along the step.
 template <class Real>
 double MomentumBalance<Real>::reach(const Vector& step, double length) {
-  std::vector<double> least(sweep_.state().grid.owners().size(), 1.0);
+  std::vector<double> least(sweep_.state().grid.occupied_blocks().size(), 1.0);
   sweep_.over_particles(
       {.from = &step}, [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
         Real* along[kAffineComponents];
         for (std::size_t k = 0; k < kAffineComponents; ++k) along[k] = own.gradient + k * kChunk;
         sweep_.gather_gradient(chunk, own.arena, along);
         const double dt = static_cast<double>(sweep_.dt());
-        double& bound = least[chunk.owner];
+        double& bound = least[chunk.occupied];
         const auto gradient = particles_.gradient(set, chunk);
         for (std::size_t p = 0; p < chunk.particles.count; ++p) {
           Mat3 a = Mat3::Identity(), b = Mat3::Zero();

@@ -40,7 +40,7 @@ class MomentumBalance {
   void forget_scale() { scale_ = std::numeric_limits<double>::infinity(); }
 
   /// Whether there are models near dv, rather than at it.
-  bool models() const { return particles_.resolves(); }
+  bool models() const { return particles_.models(); }
   /// Whether tangents may be indefinite.
   bool fades() const { return particles_.fades(); }
   /// Makes the system the tangent at the dv that was evaluated last, or of a model near it; returns |r| as the

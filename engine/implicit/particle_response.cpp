@@ -15,8 +15,8 @@ ParticleResponse<Real>::ParticleResponse(const ImplicitPlan<Real>& plan, Particl
   ScratchLayout layout = sweep.plan().scratch;
   for (std::size_t k = 0; k < kYieldHandles.size(); ++k) yield_[k] = layout.place(kYieldHandles[k]);
   for (const SetResponse<Real>& set : plan.sets) {
-    resolves_ = resolves_ || (returns_ && set.material.kernels.resolve);
-    fades_ = fades_ || (unilateral && set.material.kernels.fading_stress);
+    models_ = models_ || (returns_ && set.material.kernels.linearization_point);
+    fades_ = fades_ || (unilateral && set.material.kernels.unilateral_stress);
   }
 }
 
@@ -24,16 +24,16 @@ template <class Real>
 void ParticleResponse<Real>::follow_topology() {
   at_begin_.reserve_uninitialized(sweep_.room() * kAffineComponents);
   at_trial_.reserve_uninitialized(sweep_.room() * kTrialValues);
-  if (resolves_) model_.reserve_uninitialized(sweep_.room() * kModelValues);
+  if (models_) model_.reserve_uninitialized(sweep_.room() * kModelValues);
 }
 
 /// Numbers `first` and on of the chunk's particles, of those kept for each.
 template <class Real>
-template <std::size_t values>
+template <class Found>
 void ParticleResponse<Real>::find(AlignedArray<Real>& kept, std::size_t values_of_all, std::size_t first,
-                                  std::size_t set, const Chunk<Real>& chunk, Real* (&found)[values]) const {
+                                  std::size_t set, const Chunk<Real>& chunk, Found& found) const {
   Real* const from = kept.data() + sweep_.place(set, chunk) * values_of_all;
-  for (std::size_t k = 0; k < values; ++k) found[k] = from + (first + k) * sweep_.stride(chunk);
+  for (std::size_t k = 0; k < std::size(found); ++k) found[k] = from + (first + k) * sweep_.stride(chunk);
 }
 
 template <class Real>
@@ -42,6 +42,7 @@ typename ParticleResponse<Real>::Trial ParticleResponse<Real>::trial_of(std::siz
   Trial trial;
   find(at_trial_, kTrialValues, 0, set, chunk, trial.gradient);
   find(at_trial_, kTrialValues, kAffineComponents, set, chunk, trial.strain);
+  find(at_trial_, kTrialValues, kAffineComponents + kStrainComponents, set, chunk, trial.law);
   return trial;
 }
 
@@ -70,6 +71,13 @@ void ParticleResponse<Real>::keep_begin(std::size_t set, const Chunk<Real>& chun
   sweep_.gather_gradient(chunk, own.arena, begin);
 }
 
+/// What the law of the material keeps of a chunk's particles, for kernels to work on.
+template <class Real>
+void ParticleResponse<Real>::copy_law_channels(const Chunk<Real>& chunk, const LawChannels& to) {
+  for (std::size_t k = 0; k < chunk.set.law_channels; ++k)
+    std::copy_n(chunk.set.extra[k].values.data() + chunk.first, chunk.particles.count, to[k]);
+}
+
 /// Keeps the gradient and the trial strain of a chunk, of dv in its arena.
 template <class Real>
 void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {
@@ -83,8 +91,10 @@ void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk, con
   }
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(chunk.particles.strain[k], count, trial.strain[k]);
+  copy_law_channels(chunk, trial.law);
   MaterialInput<Real> in{};
   in.constants = plan_.sets[set].material.constants.get();
+  in.own = trial.law;
   in.dt = sweep_.dt();
   in.count = count;
   std::copy_n(trial.strain, kStrainComponents, in.strain);
@@ -101,6 +111,7 @@ TangentInput<Real> ParticleResponse<Real>::input(std::size_t set, Chunk<Real>& c
   in.material.constants = response.material.constants.get();
   in.material.dt = sweep_.dt();
   in.material.count = chunk.particles.count;
+  for (std::size_t k = 0; k < kMostLawChannels; ++k) in.material.own[k] = own.law + k * kChunk;
   for (std::size_t k = 0; k < kStrainComponents; ++k) {
     in.material.strain[k] = own.strain + k * kChunk;
     in.material.stress[k] = own.stress + k * kChunk;
@@ -117,7 +128,7 @@ void ParticleResponse<Real>::prepare_return(std::size_t set, Chunk<Real>& chunk,
   std::copy_n(in.material.strain, kStrainComponents, chunk.particles.strain);
   std::copy_n(in.material.gradient, kAffineComponents, chunk.moving_gradient);
   for (const auto& pass : response.before_return) pass.run(chunk);
-  if (!response.shaped) return;
+  if (!response.per_particle) return;
   Real* yield[kYieldHandles.size()];
   for (std::size_t k = 0; k < kYieldHandles.size(); ++k) yield[k] = chunk.scratch.at(yield_[k]);
   in.surface = {yield[0], yield[1], yield[2], yield[3], yield[4], yield[5]};
@@ -132,6 +143,8 @@ TangentInput<Real> ParticleResponse<Real>::at_trial(std::size_t set, Chunk<Real>
   std::copy_n(trial.gradient, kAffineComponents, in.material.gradient);
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(trial.strain[k], in.material.count, in.material.strain[k]);
+  for (std::size_t k = 0; k < chunk.set.law_channels; ++k)
+    std::copy_n(trial.law[k], in.material.count, in.material.own[k]);
   prepare_return(set, chunk, in);
   return in;
 }
@@ -147,6 +160,7 @@ TangentInput<Real> ParticleResponse<Real>::at_rate(std::size_t set, Chunk<Real>&
   std::copy_n(keeps ? chunk.particles.affine : begin, kAffineComponents, in.material.gradient);
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(chunk.particles.strain[k], in.material.count, in.material.strain[k]);
+  copy_law_channels(chunk, in.material.own);
   plan_.sets[set].material.kernels.trial(in.material);
   prepare_return(set, chunk, in);
   return in;
@@ -158,17 +172,18 @@ bool ParticleResponse<Real>::stress_of(std::size_t set, const TangentInput<Real>
                                        Real* const (&matrix)[kAffineComponents]) const {
   const MaterialKernels<Real>& kernels = plan_.sets[set].material.kernels;
   const MaterialInput<Real>& material = in.material;
-  if (in.surface.cone != nullptr) {
-    kernels.project_shaped(material, in.surface);
-  } else if (returns_ && kernels.project != nullptr) {
-    kernels.project(material);
+  if (in.surface.yield_slope != nullptr) {
+    kernels.return_map_per_particle(material, in.surface);
+  } else if (returns_ && kernels.return_map != nullptr) {
+    kernels.return_map(material);
   }
-  if (plan_.settings.mode == TangentMode::kUnilateral && kernels.fading_stress != nullptr) {
-    kernels.fading_stress(material, in.unilateral);
+  if (plan_.settings.mode == TangentMode::kUnilateral && kernels.unilateral_stress != nullptr) {
+    kernels.unilateral_stress(material, in.unilateral);
   } else {
     kernels.stress(material);
   }
-  return sweep_.kernels().turn(material.stress, material.gradient, material.dt, matrix, material.count);
+  return sweep_.kernels().tangent.pull_back(material.stress, material.gradient, material.dt, matrix,
+                                            material.count);
 }
 
 template <class Real>
@@ -182,21 +197,23 @@ bool ParticleResponse<Real>::stress(std::size_t set, Chunk<Real>& chunk, const I
 /// Puts the strain of `in` where the next model is to be made, and into `ahead` how far dt grad v is from
 /// there.
 template <class Real>
-void ParticleResponse<Real>::resolve(std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own,
-                                     const TangentInput<Real>& in, Real* const (&ahead)[kAffineComponents]) {
+void ParticleResponse<Real>::move_to_linearization_point(std::size_t set, Chunk<Real>& chunk,
+                                                         const ImplicitScratch<Real>& own,
+                                                         const TangentInput<Real>& in,
+                                                         Real* const (&ahead)[kAffineComponents]) {
   const Model model = model_of(set, chunk);
   const std::size_t count = in.material.count;
-  Real* foretold[kAffineComponents];
+  Real* predicted[kAffineComponents];
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
-    foretold[k] = own.matrix + k * kChunk;
+    predicted[k] = own.matrix + k * kChunk;
     for (std::size_t p = 0; p < count; ++p)
       ahead[k][p] = in.material.dt * in.material.gradient[k][p] - model.map[k][p];
   }
-  sweep_.kernels().apply_tangent(in.tangent, ahead, foretold, count);
+  sweep_.kernels().tangent.apply(in.tangent, ahead, predicted, count);
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
-    for (std::size_t p = 0; p < count; ++p) foretold[k][p] += model.stress[k][p];
+    for (std::size_t p = 0; p < count; ++p) predicted[k][p] += model.stress[k][p];
   }
-  plan_.sets[set].material.kernels.resolve(in, foretold, ahead);
+  plan_.sets[set].material.kernels.linearization_point(in, predicted, ahead);
 }
 
 /// Where the next model of a chunk is made, and into `ahead` how far dt grad v is from there.
@@ -216,7 +233,7 @@ TangentInput<Real> ParticleResponse<Real>::place_model(std::size_t set, Chunk<Re
   }
   const TangentInput<Real> in = at_trial(set, chunk, own);
   if (near) {
-    resolve(set, chunk, own, in, ahead);
+    move_to_linearization_point(set, chunk, own, in, ahead);
   } else {
     for (Real* const one : ahead) std::fill_n(one, count, Real(0));
   }
@@ -228,7 +245,7 @@ void ParticleResponse<Real>::linearize(std::size_t set, Chunk<Real>& chunk, cons
                                        bool near) {
   const MaterialKernels<Real>& kernels = plan_.sets[set].material.kernels;
   const auto make_tangents = kernels.linearize[static_cast<std::size_t>(plan_.settings.mode)];
-  if (!resolves_) {
+  if (!models_) {
     make_tangents(at_trial(set, chunk, own));
     return;
   }
@@ -239,7 +256,7 @@ void ParticleResponse<Real>::linearize(std::size_t set, Chunk<Real>& chunk, cons
     ahead[k] = own.gradient + k * kChunk;
     matrix[k] = own.matrix + k * kChunk;
   }
-  TangentInput<Real> in = place_model(set, chunk, own, near && kernels.resolve != nullptr, ahead);
+  TangentInput<Real> in = place_model(set, chunk, own, near && kernels.linearization_point != nullptr, ahead);
   make_tangents(in);
   if (!stress_of(set, in, model.stress)) {  // at its own rate a particle would be turned inside out
     in = place_model(set, chunk, own, false, ahead);
@@ -247,7 +264,7 @@ void ParticleResponse<Real>::linearize(std::size_t set, Chunk<Real>& chunk, cons
     stress_of(set, in, model.stress);
   }
   const std::size_t count = chunk.particles.count;
-  sweep_.kernels().apply_tangent(in.tangent, ahead, matrix, count);
+  sweep_.kernels().tangent.apply(in.tangent, ahead, matrix, count);
   for (std::size_t k = 0; k < kAffineComponents; ++k) {
     for (std::size_t p = 0; p < count; ++p) {
       model.map[k][p] = sweep_.dt() * trial.gradient[k][p] - ahead[k][p];

@@ -10,6 +10,7 @@ ParticleSweep<Real>::Places::Places(ScratchLayout layout)
       push(layout.place_arena(kPushArena)),
       second(layout.place_arena(kSecondArena)),
       strain(layout.place(kSolveStrain.kInfo)),
+      law(layout.place(kSolveLaw.kInfo)),
       matrix(layout.place(kSolveMatrix.kInfo)),
       gradient(layout.place(kGradientRoom.kInfo)),
       stress(layout.place(kKirchhoffStress.kInfo)) {}
@@ -18,7 +19,7 @@ template <class Real>
 void ParticleSweep<Real>::claim_scratch(ScratchLayout& layout) {
   for (const std::string_view arena : {kArena, kPushArena, kSecondArena}) layout.place_arena(arena);
   for (const HandleInfo& handle :
-       {kSolveStrain.kInfo, kSolveMatrix.kInfo, kGradientRoom.kInfo, kKirchhoffStress.kInfo})
+       {kSolveStrain.kInfo, kSolveLaw.kInfo, kSolveMatrix.kInfo, kGradientRoom.kInfo, kKirchhoffStress.kInfo})
     layout.place(handle);
 }
 
@@ -27,9 +28,9 @@ ParticleSweep<Real>::ParticleSweep(BlockSweep<Real>& blocks) : blocks_(blocks), 
 
 template <class Real>
 ImplicitScratch<Real> ParticleSweep<Real>::own(Scratch<Real>& scratch) const {
-  return {scratch.at(in_scratch_.arena),  scratch.at(in_scratch_.push),   scratch.at(in_scratch_.second),
-          scratch.at(in_scratch_.strain), scratch.at(in_scratch_.matrix), scratch.at(in_scratch_.gradient),
-          scratch.at(in_scratch_.stress)};
+  return {scratch.at(in_scratch_.arena),    scratch.at(in_scratch_.push),  scratch.at(in_scratch_.second),
+          scratch.at(in_scratch_.strain),   scratch.at(in_scratch_.law),   scratch.at(in_scratch_.matrix),
+          scratch.at(in_scratch_.gradient), scratch.at(in_scratch_.stress)};
 }
 
 template <class Real>
@@ -39,9 +40,9 @@ void ParticleSweep<Real>::follow_topology() {
   for (std::size_t set = 0; set < places_.size(); ++set) {
     const auto& begin = state().sets[set].begin;
     places_[set].clear();
-    for (std::size_t owner = 0; owner + 1 < begin.size(); ++owner) {
+    for (std::size_t occupied = 0; occupied + 1 < begin.size(); ++occupied) {
       places_[set].push_back(room_);
-      room_ += whole_groups(begin[owner + 1] - begin[owner]);
+      room_ += whole_groups(begin[occupied + 1] - begin[occupied]);
     }
   }
 }

@@ -13,6 +13,7 @@ namespace repose {
 inline constexpr std::string_view kPushArena = "what particles push", kSecondArena = "the same, second";
 inline constexpr Handle<"strain in the solve", Place::kScratch, kStrainComponents> kSolveStrain;
 inline constexpr Handle<"S", Place::kScratch, kAffineComponents> kSolveMatrix;
+inline constexpr Handle<"law's channels in the solve", Place::kScratch, kMostLawChannels> kSolveLaw;
 
 /// Where that is, and what of the passes' own it works with.
 template <class Real>
@@ -21,6 +22,7 @@ struct ImplicitScratch {
   Real* push;      ///< what they add to nodes
   Real* second;    ///< the same of a second vector
   Real* strain;    ///< trial strain, then the one that is returned; components kChunk apart
+  Real* law;       ///< the same of what the material's law keeps
   Real* matrix;    ///< S or its change, by rows
   Real* gradient;  ///< by rows
   Real* stress;
@@ -71,7 +73,7 @@ class ParticleSweep {
   /// Which particle a chunk begins with in arrays that have numbers for room() of them. Of an array with n
   /// numbers each, number k of the chunk's particle p is at n * place + k * stride(chunk) + p.
   std::size_t place(std::size_t set, const Chunk<Real>& chunk) const {
-    return places_[set][chunk.owner] + (chunk.first - chunk.set.begin[chunk.owner]);
+    return places_[set][chunk.occupied] + (chunk.first - chunk.set.begin[chunk.occupied]);
   }
   static std::size_t stride(const Chunk<Real>& chunk) { return whole_groups(chunk.particles.count); }
   std::size_t room() const { return room_; }
@@ -98,11 +100,11 @@ class ParticleSweep {
 
   BlockSweep<Real>& blocks_;
   struct Places {
-    std::size_t arena, push, second, strain, matrix, gradient, stress;
+    std::size_t arena, push, second, strain, law, matrix, gradient, stress;
     explicit Places(ScratchLayout layout);
   } in_scratch_;
-  std::vector<std::vector<std::size_t>> places_;  // per set and owner
-  std::size_t room_ = 0;                          // particles, each owner's of a set in whole groups
+  std::vector<std::vector<std::size_t>> places_;  // per set and occupied block
+  std::size_t room_ = 0;                          // particles, each occupied block's of a set in whole groups
   Lattice<Real> lattice_{};
 };
 
@@ -125,7 +127,7 @@ void ParticleSweep<Real>::over_particles(const SweptNodes<Real>& nodes, Body bod
   if (nodes.to == nullptr && nodes.second == nullptr) {
     blocks_.over_moving(visit);
   } else {
-    blocks_.over_telling(visit);
+    blocks_.over_scattering(visit);
   }
 }
 

@@ -36,7 +36,7 @@ void TangentSystem<Real>::apply(const Vector& x, Vector& y) {
                           }
                           const Real* const tangents = tangent(set, chunk);
                           sweep_.gather_gradient(chunk, own.arena, gradient, {tangents, kTangentValues});
-                          sweep_.kernels().apply_tangent(tangents, gradient, matrix, chunk.particles.count);
+                          sweep_.kernels().tangent.apply(tangents, gradient, matrix, chunk.particles.count);
                           sweep_.push(chunk, own, -square_dt * chunk.set.particle_volume);
                         });
 }

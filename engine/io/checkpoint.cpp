@@ -31,7 +31,7 @@ struct Head {
   std::int32_t precision_bytes = 0;
   std::int32_t sets = 0;
   std::uint64_t particles = 0;
-  std::uint64_t owners = 0;
+  std::uint64_t occupied = 0;
   Counters counters;
 };
 
@@ -43,7 +43,7 @@ void for_each_field(AnyHead& head, Visit visit) {
   visit(head.precision_bytes);
   visit(head.sets);
   visit(head.particles);
-  visit(head.owners);
+  visit(head.occupied);
   auto& counters = head.counters;
   visit(counters.frame);
   visit(counters.step);
@@ -244,15 +244,17 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   head.precision_bytes = sizeof(Real);
   head.sets = static_cast<std::int32_t>(state.sets.size());
   head.particles = state.particles();
-  head.owners = state.grid.owners().size();
+  head.occupied = state.grid.occupied_blocks().size();
   head.counters = state.counters;
   const std::string head_bytes = bytes_of(head);
   if (auto written = write_chunk(*file, "head", head_bytes.data(), head_bytes.size()); !written) return written;
-  std::vector<Index3> owners;
-  for (const std::int32_t owner : state.grid.owners()) {
-    owners.push_back(state.grid.blocks()[static_cast<std::size_t>(owner)]);
+  std::vector<Index3> occupied_blocks;
+  for (const std::int32_t occupied : state.grid.occupied_blocks()) {
+    occupied_blocks.push_back(state.grid.blocks()[static_cast<std::size_t>(occupied)]);
   }
-  if (auto written = write_chunk(*file, "blocks", owners.data(), owners.size() * sizeof(Index3)); !written) {
+  if (auto written =
+          write_chunk(*file, "blocks", occupied_blocks.data(), occupied_blocks.size() * sizeof(Index3));
+      !written) {
     return written;
   }
   const std::vector<std::uint64_t> counts = counts_of(state);
@@ -293,11 +295,13 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
       (head->particles != state.particles() && !state.ledger.open())) {
     return Error{ErrorKind::kBadScene, "holds other particles, or another precision, than this scene", path};
   }
-  std::vector<Index3> owners(head->owners);
-  if (auto read = reader->read("blocks", owners.data(), owners.size() * sizeof(Index3)); !read) return read;
+  std::vector<Index3> occupied_blocks(head->occupied);
+  if (auto read = reader->read("blocks", occupied_blocks.data(), occupied_blocks.size() * sizeof(Index3));
+      !read)
+    return read;
   if (auto read = read_counts(*reader, state); !read) return read;
   if (state.rest.on) {
-    state.rest.resize(head->owners);
+    state.rest.resize(head->occupied);
     if (auto read = read_rest(*reader, state.rest); !read) return read;
   }
   if (state.last_motion.on) {
@@ -306,16 +310,16 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
   if (auto read = reader->read("tallies", state.tallies.data(), tally_bytes); !read) return read;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    state.sets[k].begin.resize(head->owners + 1);
+    state.sets[k].begin.resize(head->occupied + 1);
     auto read = for_each_array(state.sets[k], k, [&](const std::string& name, void* data, std::size_t bytes) {
       return reader->read(name, data, bytes);
     });
     if (!read) return read;
   }
   state.counters = head->counters;
-  state.grid.build(owners, state.topology);
+  state.grid.build(occupied_blocks, state.topology);
   state.nodes.resize(state.grid.size());
-  state.rows_touched.assign(state.grid.owners().size(), 0);
+  state.rows_touched.assign(state.grid.occupied_blocks().size(), 0);
   return {};
 }
 

@@ -27,7 +27,7 @@ struct NodeBlock {
 };
 
 /// Where the plan has put what a handle names: a place in scratch, a channel of a set, or an object.
-struct Slot {
+struct Located {
   std::size_t place = 0;
   void* table = nullptr;
 };
@@ -59,7 +59,7 @@ class BlockPlace {
 template <class Real, class Read, class Write>
 class DeclaredHandles {
  public:
-  using Slots = std::array<Slot, Read::kSize + Write::kSize>;
+  using Places = std::array<Located, Read::kSize + Write::kSize>;
 
   template <class Handle>
   static constexpr bool reads() {
@@ -75,18 +75,18 @@ class DeclaredHandles {
     return Read::template index<Handle>();
   }
 
-  explicit DeclaredHandles(const Slots& slots) : slots_(&slots) {}
+  explicit DeclaredHandles(const Places& places) : places_(&places) {}
 
   /// An object that follows the topology.
   template <class Handle>
   requires(Handle::kPlace == Place::kTable && reads<Handle>()) const
       typename Handle::template Of<Real>& read(Handle) const {
-    return *static_cast<const typename Handle::template Of<Real>*>(slot<Handle>().table);
+    return *static_cast<const typename Handle::template Of<Real>*>(located<Handle>().table);
   }
   template <class Handle>
   requires(Handle::kPlace == Place::kTable && writes<Handle>())
       typename Handle::template Of<Real>& write(Handle) const {
-    return *static_cast<typename Handle::template Of<Real>*>(slot<Handle>().table);
+    return *static_cast<typename Handle::template Of<Real>*>(located<Handle>().table);
   }
 
   /// The place of a handle that is declared by when(), and is not.
@@ -94,16 +94,16 @@ class DeclaredHandles {
 
  protected:
   template <class Handle>
-  const Slot& slot() const {
-    return (*slots_)[index<Handle>()];
+  const Located& located() const {
+    return (*places_)[index<Handle>()];
   }
   template <class Handle>
   bool absent() const {
-    return slot<Handle>().place == kAbsent;
+    return located<Handle>().place == kAbsent;
   }
 
  private:
-  const Slots* slots_;
+  const Places* places_;
 };
 
 /// Of a chunk of particles.
@@ -114,7 +114,7 @@ class ChunkAccess : public DeclaredHandles<Real, Read, Write> {
  public:
   using Declared::read, Declared::write;
 
-  ChunkAccess(Chunk<Real>& chunk, const typename Declared::Slots& slots) : Declared(slots), chunk_(chunk) {}
+  ChunkAccess(Chunk<Real>& chunk, const typename Declared::Places& places) : Declared(places), chunk_(chunk) {}
 
   std::size_t count() const { return chunk_.particles.count; }
   /// Distance to the particles that are worked on next, as in ParticleSpan.
@@ -124,7 +124,7 @@ class ChunkAccess : public DeclaredHandles<Real, Read, Write> {
   double spacing() const { return chunk_.spacing; }  ///< dx, m
   double mass() const { return chunk_.set.particle_mass; }
   double volume() const { return chunk_.set.particle_volume; }
-  std::size_t owner() const { return chunk_.owner; }
+  std::size_t occupied() const { return chunk_.occupied; }
   bool two_velocities() const { return chunk_.two_velocities; }
   Vec3 world(const Vec3& offset) const { return chunk_.world(offset); }
 
@@ -191,10 +191,15 @@ class ChunkAccess : public DeclaredHandles<Real, Read, Write> {
   auto find() const {
     if constexpr (Handle::kPlace == Place::kExtra) {
       if (this->template absent<Handle>()) return static_cast<Number*>(nullptr);
-      return static_cast<Number*>(chunk_.set.extra[this->template slot<Handle>().place].values.data() +
+      return static_cast<Number*>(chunk_.set.extra[this->template located<Handle>().place].values.data() +
                                   chunk_.first);
+    } else if constexpr (Handle::kPlace == Place::kLaw) {
+      std::array<Number*, Handle::kComponents> all{};
+      const std::size_t kept = this->template absent<Handle>() ? 0 : chunk_.set.law_channels;
+      for (std::size_t k = 0; k < kept; ++k) all[k] = chunk_.set.extra[k].values.data() + chunk_.first;
+      return all;
     } else if constexpr (Handle::kPlace == Place::kScratch || Handle::kPlace == Place::kRoom) {
-      const std::size_t place = this->template slot<Handle>().place;
+      const std::size_t place = this->template located<Handle>().place;
       const bool absent = this->template absent<Handle>();
       Number* const from = absent ? nullptr : chunk_.scratch.at(place);
       if constexpr (Handle::kComponents == 1) {
@@ -227,7 +232,8 @@ class ChunkAccess : public DeclaredHandles<Real, Read, Write> {
   }
   template <class Handle>
   Real* nodes() const {
-    return this->template absent<Handle>() ? nullptr : chunk_.scratch.at(this->template slot<Handle>().place);
+    return this->template absent<Handle>() ? nullptr
+                                           : chunk_.scratch.at(this->template located<Handle>().place);
   }
 
   Chunk<Real>& chunk_;
@@ -241,8 +247,8 @@ class NodeAccess : public DeclaredHandles<Real, Read, Write> {
  public:
   using Declared::read, Declared::write;
 
-  NodeAccess(const NodeBlock<Real>& block, const typename Declared::Slots& slots)
-      : Declared(slots), block_(block) {}
+  NodeAccess(const NodeBlock<Real>& block, const typename Declared::Places& places)
+      : Declared(places), block_(block) {}
 
   Real dt() const { return block_.dt; }
   double time() const { return block_.state.counters.time; }  ///< at the start of the step, s
@@ -283,11 +289,11 @@ class TableAccess : public DeclaredHandles<Real, Read, Write> {
   using Declared = DeclaredHandles<Real, Read, Write>;
 
  public:
-  explicit TableAccess(std::shared_ptr<const typename Declared::Slots> slots)
-      : Declared(*slots), slots_(slots) {}
+  explicit TableAccess(std::shared_ptr<const typename Declared::Places> places)
+      : Declared(*places), places_(places) {}
 
  private:
-  std::shared_ptr<const typename Declared::Slots> slots_;
+  std::shared_ptr<const typename Declared::Places> places_;
 };
 
 /// Of the state as a whole, between steps.
@@ -296,7 +302,7 @@ class StateAccess : public DeclaredHandles<Real, Read, Write> {
   using Declared = DeclaredHandles<Real, Read, Write>;
 
  public:
-  StateAccess(State<Real>& state, const typename Declared::Slots& slots) : Declared(slots), state_(state) {}
+  StateAccess(State<Real>& state, const typename Declared::Places& places) : Declared(places), state_(state) {}
 
   State<Real>& state() const { return state_; }
 

@@ -4,6 +4,7 @@
 
 #include "engine/plan/scratch.h"
 #include "engine/state/state.h"
+#include "kernels/pass/particle_kernels.h"
 
 namespace repose {
 
@@ -17,7 +18,7 @@ struct Chunk {
   double spacing;               ///< dx, m
   double time;                  ///< at the start of the step, s
   Vec3 origin;                  ///< of the block, in the scene's frame, m
-  std::size_t owner = 0;        ///< the block, as the grid counts those that hold particles
+  std::size_t occupied = 0;     ///< the block, as the grid counts those that hold particles
   bool two_velocities = false;  ///< whether particles keep another velocity than the one that moves them
   struct Touched {
     std::uint64_t rows = 0;  ///< of the arena

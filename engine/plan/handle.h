@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "kernels/layout/particle_span.h"
+#include "kernels/material/materials.h"
 
 namespace repose {
 
@@ -29,6 +30,7 @@ enum class Place {
   kAffine,         //
   kStrain,         //
   kExtra,          ///< a channel that an effect has asked for
+  kLaw,            ///< the channels that the law of the set's material keeps
   kScratch,        ///< one array of the chunk for each name and component
   kRoom,           ///< the same, of no use to other passes
   kMoving,         ///< wherever the gather left the velocity that moves particles
@@ -144,13 +146,15 @@ inline constexpr Handle<"trial strain", Place::kStrain, kStrainComponents> kTria
 inline constexpr Handle<"stress", Place::kScratch, kStrainComponents> kKirchhoffStress;  ///< tau, Pa
 inline constexpr Handle<"no stress", Place::kRoom, kStrainComponents> kNoStress;  ///< never written: zeros
 /// What particles tell the nodes, where something pushes them: v + dt b, m/s.
-inline constexpr Handle<"told velocity", Place::kScratch, 3> kToldVelocity;
+inline constexpr Handle<"told velocity", Place::kScratch, 3> kP2gVelocity;
 inline constexpr Handle<"particles' velocity before forces", Place::kRoom, 3> kBefore;  ///< m/s
 inline constexpr Handle<"moving velocity", Place::kMoving, 3> kMovingVelocity;          ///< m/s
 inline constexpr Handle<"gradient", Place::kGradient, kAffineComponents> kGradient;     ///< of it, 1/s
 /// Room for both, where they are not what particles keep, and for trials.
 inline constexpr Handle<"room for velocity", Place::kRoom, 3> kVelocityRoom;
 inline constexpr Handle<"room for gradient", Place::kRoom, kAffineComponents> kGradientRoom;
+/// What the law of a material keeps beside the strain, in its order.
+inline constexpr Handle<"law's channels", Place::kLaw, kMostLawChannels> kLawChannels;
 inline constexpr Handle<"motion", Place::kMotion> kMotion;
 inline constexpr Handle<"touched nodes", Place::kTouched> kTouched;
 
@@ -162,7 +166,7 @@ inline constexpr Handle<"v-tilde", Place::kAfterFriction> kVTilde;  ///< mass, a
 inline constexpr Handle<"active nodes", Place::kActive> kActiveNodes;
 
 /// By which particles yield, where they do so by numbers of their own, and what yielding did (YieldInput).
-inline constexpr Handle<"cone", Place::kScratch> kCone;
+inline constexpr Handle<"yield slope", Place::kScratch> kYieldSlope;
 inline constexpr Handle<"cohesion", Place::kScratch> kCohesion;
 inline constexpr Handle<"dilatancy", Place::kScratch> kDilatancy;
 inline constexpr Handle<"plastic strain", Place::kScratch> kPlastic;

@@ -11,6 +11,7 @@
 
 #include "engine/plan/access.h"
 #include "engine/plan/constraint.h"
+#include "engine/plan/report.h"
 #include "engine/state/particle_edit.h"
 
 namespace repose {
@@ -63,14 +64,6 @@ struct EventPass {
   PassDescription description;
   std::function<bool(const State<Real>&, Moment)> due;              ///< costs nothing per particle
   std::function<void(State<Real>&, ParticleEdit<Real>& edit)> run;  ///< keeps the ledger
-};
-
-/// One figure of a probe.
-struct Measurement {
-  std::string probe;     ///< its name in the scene
-  std::string quantity;  ///< such as "force.x"
-  std::string unit;      ///< empty for a number of things
-  double value = 0.0;    ///< not a number where there is none
 };
 
 /// Measures while frames pass and changes nothing. What it sums over steps it keeps in its part of
@@ -128,7 +121,7 @@ class PassMaker {
  public:
   /// `set`: of passes over particles.
   PassMaker(ScratchLayout& scratch, const Tables& tables, const ParticleSet<Real>* set = nullptr)
-      : scratch_(scratch), tables_(tables), set_(set) {}
+      : scratch_(&scratch), tables_(&tables), set_(set) {}
 
   template <class... R, class... W, class Body>
   ParticlePass<Real> over_particles(PassName name, Reads<R...> reads, Writes<W...> writes, Body body) {
@@ -174,55 +167,71 @@ class PassMaker {
   MeasurePass<Real> measure(PassName name, Reads<R...> reads, Writes<W...> writes, Make make) {
     using Access = TableAccess<Real, Reads<R...>, Writes<W...>>;
     MeasurePass<Real> made =
-        make(Access(std::make_shared<const typename Access::Slots>(slots<Access>(reads, writes))));
+        make(Access(std::make_shared<const typename Access::Places>(places<Access>(reads, writes))));
     made.description = describe(std::move(name), reads, writes);
     return made;
   }
 
  private:
   template <class Access, class R, class W>
-  typename Access::Slots slots(const R& reads, const W& writes) {
-    typename Access::Slots slots;
+  typename Access::Places places(const R& reads, const W& writes) {
+    typename Access::Places places;
     std::size_t k = 0;
     const auto find = [&](auto handle, bool declared) {
-      slots[k++] = declared ? slot_of(decltype(handle)::kInfo) : Slot{Access::kAbsent, nullptr};
+      places[k++] = declared ? locate(decltype(handle)::kInfo) : Located{Access::kAbsent, nullptr};
     };
     reads.for_each(find);
     writes.for_each(find);
-    return slots;
+    return places;
   }
   template <class Made, class Access, class R, class W, class Body>
   Made bind(PassName name, const R& reads, const W& writes, Body body) {
     return {describe(std::move(name), reads, writes),
-            [slots = slots<Access>(reads, writes), body = std::move(body)](auto& subject, auto&&... more) {
-              body(Access(subject, slots), std::forward<decltype(more)>(more)...);
+            [places = places<Access>(reads, writes), body = std::move(body)](auto& subject, auto&&... more) {
+              body(Access(subject, places), std::forward<decltype(more)>(more)...);
             }};
   }
-  Slot slot_of(const HandleInfo& handle) {
+  Located locate(const HandleInfo& handle) {
     switch (handle.place) {
       case Place::kExtra:
         return {set_->extra_index(handle.name), nullptr};
       case Place::kScratch:
       case Place::kRoom:
-        return {scratch_.place(handle), nullptr};
+        return {scratch_->place(handle), nullptr};
       case Place::kNodes:
-        return {set_ == nullptr ? 0 : scratch_.place_arena(kArena), nullptr};
+        return {set_ == nullptr ? 0 : scratch_->place_arena(kArena), nullptr};
       case Place::kBeforeForces:
-        return {set_ == nullptr ? 0 : scratch_.place_arena(kArenaBeforeForces), nullptr};
+        return {set_ == nullptr ? 0 : scratch_->place_arena(kArenaBeforeForces), nullptr};
       case Place::kAfterFriction:
-        return {set_ == nullptr ? 0 : scratch_.place_arena(kArenaAfterFriction), nullptr};
+        return {set_ == nullptr ? 0 : scratch_->place_arena(kArenaAfterFriction), nullptr};
       case Place::kTable:
-        REPOSE_ASSERT(tables_.find(handle) != nullptr);  // made before passes name it
-        return {0, tables_.find(handle)};
+        REPOSE_ASSERT(tables_->find(handle) != nullptr);  // made before passes name it
+        return {0, tables_->find(handle)};
       default:
         return {};
     }
   }
 
-  ScratchLayout& scratch_;
-  const Tables& tables_;
+  ScratchLayout* scratch_;
+  const Tables* tables_;
   const ParticleSet<Real>* set_;
 };
+
+/// Whether a pass of a list writes a handle, or reads it.
+template <class Passes>
+bool provided(const Passes& list, const HandleInfo& handle) {
+  return std::any_of(list.begin(), list.end(), [&](const auto& pass) {
+    const auto& writes = pass.description.writes;
+    return std::find(writes.begin(), writes.end(), handle) != writes.end();
+  });
+}
+template <class Passes>
+bool asked_for(const Passes& list, const HandleInfo& handle) {
+  return std::any_of(list.begin(), list.end(), [&](const auto& pass) {
+    const auto& reads = pass.description.reads;
+    return std::find(reads.begin(), reads.end(), handle) != reads.end();
+  });
+}
 
 /// The passes of one set in one phase, in the order in which they are added.
 template <class Real>
@@ -237,10 +246,7 @@ class SetPasses {
   /// Whether a pass that was added writes a handle.
   template <class Handle>
   bool provides(Handle) const {
-    return std::any_of(list_.begin(), list_.end(), [](const ParticlePass<Real>& pass) {
-      const auto& writes = pass.description.writes;
-      return std::find(writes.begin(), writes.end(), Handle::kInfo) != writes.end();
-    });
+    return provided(list_, Handle::kInfo);
   }
 
  private:

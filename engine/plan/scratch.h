@@ -8,7 +8,6 @@
 #include "engine/base/result.h"
 #include "engine/plan/handle.h"
 #include "kernels/layout/node_block.h"
-#include "kernels/pass/pass.h"
 
 namespace repose {
 

@@ -33,13 +33,13 @@ constexpr bool within_step(double moment, double from, double to) {
   return from <= moment && moment < to;
 }
 
-/// How the particles of owners move: sums over some of each, for a mean.
+/// How the particles of occupied blocks move: sums over some of each, for a mean.
 struct Drift {
   struct Sum {
     std::array<double, 3> velocity{0, 0, 0};  ///< m/s
     double samples = 0.0;
   };
-  std::vector<Sum> sums;  ///< per owner
+  std::vector<Sum> sums;  ///< per occupied block
 
   std::size_t bytes() const { return sums.capacity() * sizeof(Sum); }
 };

@@ -48,6 +48,7 @@ class Known {
   void learn_channels(const ParticleSet<Real>& set) {
     for (const HandleInfo& handle : kEveryParticle) learn(handle);
     if (set.keeps_affine) learn(kAffine.kInfo);
+    if (set.law_channels > 0) learn(kLawChannels.kInfo);
     for (const auto& channel : set.extra) learn({channel.name, Place::kExtra, 1});
   }
   /// What `other` has of nodes: what a chunk hands on in scratch ends with it.
@@ -94,7 +95,7 @@ std::string StepPlan<Real>::fault(const State<Real>& state) const {
   if (fault.empty()) fault = on_nodes.follow_all(nodes);
   if (fault.empty()) fault = on_nodes.follow_all(constraints);
   if (fault.empty() && implicit) fault = on_nodes.follow(implicit->description);
-  if (fault.empty()) fault = on_nodes.follow_all(holds);
+  if (fault.empty()) fault = on_nodes.follow_all(applied);
   for (std::size_t k = 0; k < gather.size() && fault.empty(); ++k) {
     Known own = of_set(on_nodes, k);
     fault = own.follow_all(gather[k]);

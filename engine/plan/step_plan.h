@@ -15,7 +15,8 @@
 #include "engine/plan/implicit_plan.h"
 #include "engine/plan/pass.h"
 #include "engine/plan/sleep.h"
-#include "engine/state/ownership.h"
+#include "engine/plan/transfer_choice.h"
+#include "kernels/pass/target.h"
 
 namespace repose {
 
@@ -28,32 +29,6 @@ struct StepLimits {
     double dilation_speed;  ///< sqrt((3 lambda + 2 mu)/rho), m/s: the pulse of a particle alone
   };
   std::vector<Stiffness> sets;
-};
-
-/// Which velocity moves positions and strain where there is friction. Klar et al. 2016 (section 5.4) take
-/// v-bar; then all the shear of a step reaches the nodes at a wall before friction does, and what should rest
-/// creeps by about 2 dt g sin(theta) H / dx. With explicit steps v-tilde is as stable, rests, and saves the
-/// second gather.
-enum class Advection {
-  kAfterFriction,   ///< v-tilde
-  kBeforeFriction,  ///< v-bar
-};
-
-/// The stencil and the transfer of a scene.
-struct TransferChoice {
-  int stencil = 0, transfer = 0;  ///< positions in the kernels' lists
-  double kept_velocity = 0.0;     ///< share of its own velocity that a particle keeps (FLIP), in [0, 1]
-  double kept_stretching = 0.0;   ///< share of stretching that RPIC tells, in [0, 1]
-
-  const StencilFigures& nodes() const { return kStencilFigures[static_cast<std::size_t>(stencil)]; }
-  const TransferFigures& figures() const { return kTransferFigures[static_cast<std::size_t>(transfer)]; }
-  Ownership ownership() const { return {nodes().base_shift, nodes().block_shift}; }
-  /// Whether particles store C.
-  bool keeps_affine() const { return figures().affine != Affine::kNone; }
-  /// Whether the gradient that strains is another matrix than the C that a particle stores.
-  bool separate_gradient() const {
-    return !keeps_affine() || (figures().force == Force::kGradients && nodes().constant_d);
-  }
 };
 
 /// How much memory a simulation may take, bytes; and what of it writing a frame takes, beside what lasts: the
@@ -70,8 +45,12 @@ struct MemoryBound {
 };
 
 template <class Real>
+struct Kernels;
+
+template <class Real>
 struct StepPlan {
-  const Kernels<Real>* kernels = nullptr;
+  Target target = Target::kBaseline;
+  const Kernels<Real>* kernels = nullptr;  ///< of the target
   TransferChoice transfer;
   StepLimits limits;
   Real least_mass = 0;  ///< kg; a node below it is empty
@@ -86,12 +65,12 @@ struct StepPlan {
   std::vector<PreparePass<Real>> prepare;
   std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set
   std::vector<NodePass<Real>> nodes;                     ///< forces
-  std::vector<NodePass<Real>> holds;                     ///< what holds nodes, after all forces
+  std::vector<NodePass<Real>> applied;                   ///< constraints, applied after all forces
   std::vector<std::vector<ParticlePass<Real>>> gather;   ///< per set
 
   std::vector<MeasurePass<Real>> measures;
 
-  /// Where steps are implicit: between forces and the gather, instead of `holds`, nodes are solved for within
+  /// Where steps are implicit: between forces and the gather, instead of `applied`, nodes are solved for within
   /// their constraints.
   std::optional<ImplicitPlan<Real>> implicit;
   std::vector<ConstraintPass<Real>> constraints;
@@ -117,7 +96,7 @@ struct StepPlan {
     each("nodes", -1, plan.nodes);
     each("solve", -1, plan.constraints);
     if (plan.implicit) visit("solve", -1, plan.implicit->description);
-    each("nodes", -1, plan.holds);
+    each("nodes", -1, plan.applied);
     for (std::size_t k = 0; k < plan.gather.size(); ++k) each("gather", static_cast<int>(k), plan.gather[k]);
     each("measure", -1, plan.measures);
   }
@@ -138,12 +117,13 @@ struct StepPlan {
   }
 
   PassMaker<Real> passes() { return {scratch, tables}; }
+  PassMaker<Real> passes_of(const ParticleSet<Real>& set) { return {scratch, tables, &set}; }
   /// Passes of set k, before and after the nodes.
   SetPasses<Real> scatter_of(const State<Real>& state, std::size_t k) {
-    return {PassMaker<Real>(scratch, tables, &state.sets[k]), scatter[k]};
+    return {passes_of(state.sets[k]), scatter[k]};
   }
   SetPasses<Real> gather_of(const State<Real>& state, std::size_t k) {
-    return {PassMaker<Real>(scratch, tables, &state.sets[k]), gather[k]};
+    return {passes_of(state.sets[k]), gather[k]};
   }
 
   /// What is wrong with the plan, empty where nothing is: a pass reads what nothing before it provides, or a

@@ -13,14 +13,11 @@
 
 #include <algorithm>
 
+#include "engine/plan/report.h"
 #include "engine/plan/step_plan.h"
 #include "engine/state/state.h"
 
 namespace repose {
-
-enum class Limit { kMaxStep, kVelocity, kSound, kIsolated, kStrain, kFrame };
-inline constexpr std::size_t kLimits = 6;
-const char* limit_name(Limit limit);
 
 struct StepSize {
   double dt = 0.0;  ///< s

@@ -5,6 +5,12 @@
 namespace repose {
 namespace {
 
+/// The channels of a material's law, where it has some.
+template <class Real>
+auto law_of(const MaterialRuntime<Real>& material) {
+  return when(material.channels > 0, kLawChannels);
+}
+
 /// What kernels of materials take. They have one struct for those that read the strain and those that write it.
 template <class Real, class Access>
 MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, const Access& at) {
@@ -18,6 +24,10 @@ MaterialInput<Real> material_input(const MaterialRuntime<Real>& material, const 
 template <class Strain, class Real>
 void take_strain(const Strain& strain, MaterialInput<Real>& in) {
   for (std::size_t k = 0; k < strain.size(); ++k) in.strain[k] = const_cast<Real*>(strain[k]);
+}
+template <class Channels, class Real>
+void take_channels(const Channels& channels, MaterialInput<Real>& in) {
+  for (std::size_t k = 0; k < channels.size(); ++k) in.own[k] = const_cast<Real*>(channels[k]);
 }
 
 }  // namespace
@@ -36,22 +46,24 @@ Lattice<Real> make_lattice(const State<Real>& state, const TransferChoice& trans
 
 template <class Real>
 void add_stress(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
-  passes.add({"stress"}, reads(kHenckyStrain), writes(kKirchhoffStress), [material](const auto& at) {
-    MaterialInput<Real> in = material_input(material, at);
-    take_strain(at.read(kHenckyStrain), in);
-    std::copy_n(at.write(kKirchhoffStress).begin(), kStrainComponents, in.stress);
-    material.kernels.stress(in);
-  });
+  passes.add({"stress"}, reads(kHenckyStrain, law_of(material)), writes(kKirchhoffStress),
+             [material](const auto& at) {
+               MaterialInput<Real> in = material_input(material, at);
+               take_strain(at.read(kHenckyStrain), in);
+               take_channels(at.read(kLawChannels), in);
+               std::copy_n(at.write(kKirchhoffStress).begin(), kStrainComponents, in.stress);
+               material.kernels.stress(in);
+             });
 }
 
 template <class Real>
 void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPasses<Real> passes) {
   const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].scatter;
-  const bool keeps_velocity = plan.transfer.figures().keeps_velocity, pushed = passes.provides(kToldVelocity);
+  const bool keeps_velocity = plan.transfer.figures().keeps_velocity, pushed = passes.provides(kP2gVelocity);
   const bool forces = !plan.implicit;  // stress is one; a solve finds its own
   const auto stress = when(forces, kKirchhoffStress);
   const auto no_stress = when(!forces, kNoStress);
-  const auto told = when(pushed, kToldVelocity);
+  const auto told = when(pushed, kP2gVelocity);
   const auto velocity = when(keeps_velocity || !pushed, kParticleVelocity);
   const auto affine = when(plan.transfer.keeps_affine(), kAffine);
   const auto before = when(keeps_velocity, kMomentumBeforeForces);
@@ -61,7 +73,7 @@ void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPa
                ScatterInput<Real> in{};
                in.particles = at.span();
                if (pushed) {
-                 const auto v = at.read(kToldVelocity);
+                 const auto v = at.read(kP2gVelocity);
                  for (std::size_t axis = 0; axis < 3; ++axis)
                    in.particles.velocity[axis] = const_cast<Real*>(v[axis]);
                }
@@ -157,7 +169,7 @@ void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, bool f
 template <class Real>
 void add_advance(const StepPlan<Real>& plan, SetPasses<Real> passes) {
   passes.add({"advance"}, reads(kPosition, kParticleVelocity, kMovingVelocity, kGradient),
-             writes(kPosition, kMotion), [kernel = plan.kernels->advance](const auto& at) {
+             writes(kPosition, kMotion), [kernel = plan.kernels->particle.advance](const auto& at) {
                const Real per_cell = static_cast<Real>(static_cast<double>(at.dt()) / at.spacing());
                kernel(at.span(), at.read(kMovingVelocity).data(), at.read(kGradient).data(), per_cell,
                       at.write(kMotion));
@@ -168,12 +180,15 @@ namespace {
 
 template <class Real, class To>
 void add_trial_as(const MaterialRuntime<Real>& material, To to, SetPasses<Real> passes) {
-  passes.add({"trial strain"}, reads(kHenckyStrain, kGradient), writes(to), [material, to](const auto& at) {
-    MaterialInput<Real> in = material_input(material, at);
-    take_strain(at.write(to), in);
-    std::copy_n(at.read(kGradient).begin(), kAffineComponents, in.gradient);
-    material.kernels.trial(in);
-  });
+  const auto law = law_of(material);
+  passes.add({"trial strain"}, reads(kHenckyStrain, kGradient, law), writes(to, law),
+             [material, to](const auto& at) {
+               MaterialInput<Real> in = material_input(material, at);
+               take_strain(at.write(to), in);
+               take_channels(at.write(kLawChannels), in);
+               std::copy_n(at.read(kGradient).begin(), kAffineComponents, in.gradient);
+               material.kernels.trial(in);
+             });
 }
 
 }  // namespace
@@ -189,31 +204,33 @@ void add_trial(const MaterialRuntime<Real>& material, bool yields, SetPasses<Rea
 
 template <class Real>
 void add_return_map(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
-  passes.add({"return map"}, reads(kTrialStrain), writes(kHenckyStrain), [material](const auto& at) {
+  const auto law = law_of(material);
+  passes.add({"return map"}, reads(kTrialStrain, law), writes(kHenckyStrain, law), [material](const auto& at) {
     MaterialInput<Real> in = material_input(material, at);
     take_strain(at.write(kHenckyStrain), in);
-    material.kernels.project(in);
+    take_channels(at.write(kLawChannels), in);
+    material.kernels.return_map(in);
   });
 }
 
 template <class Real>
 void add_yield_surface(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
-  passes.add({"yield surface"}, reads(), writes(kCone, kCohesion, kDilatancy),
-             [cone = material.cone](const auto& at) {
-               std::fill_n(at.write(kCone), at.count(), cone);
+  passes.add({"yield surface"}, reads(), writes(kYieldSlope, kCohesion, kDilatancy),
+             [slope = material.yield_slope](const auto& at) {
+               std::fill_n(at.write(kYieldSlope), at.count(), slope);
                std::fill_n(at.write(kCohesion), at.count(), Real(0));
                std::fill_n(at.write(kDilatancy), at.count(), Real(0));
              });
 }
 
 template <class Real>
-void add_shaped_return_map(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
-  passes.add({"return map, shaped"}, reads(kTrialStrain, kCone, kCohesion, kDilatancy),
+void add_return_map_per_particle(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
+  passes.add({"return map, per particle"}, reads(kTrialStrain, kYieldSlope, kCohesion, kDilatancy),
              writes(kHenckyStrain, kPlastic, kSheared, kDilated), [material](const auto& at) {
                MaterialInput<Real> in = material_input(material, at);
                take_strain(at.write(kHenckyStrain), in);
-               material.kernels.project_shaped(
-                   in, {at.read(kCone), at.read(kCohesion), at.read(kDilatancy), at.write(kPlastic),
+               material.kernels.return_map_per_particle(
+                   in, {at.read(kYieldSlope), at.read(kCohesion), at.read(kDilatancy), at.write(kPlastic),
                         at.write(kSheared), at.write(kDilated)});
              });
 }
@@ -222,7 +239,7 @@ template <class Real>
 void add_normalize(StepPlan<Real>& plan) {
   plan.nodes.push_back(plan.passes().over_nodes(
       {"node velocity"}, reads(kNodeMomentum), writes(kNodeVelocity, kActiveNodes),
-      [kernel = plan.kernels->normalize, least_mass = plan.least_mass](const auto& at) {
+      [kernel = plan.kernels->node.normalize, least_mass = plan.least_mass](const auto& at) {
         at.write(kActiveNodes) = kernel(at.write(kNodeVelocity), least_mass);
       }));
 }
@@ -236,7 +253,7 @@ void add_velocity_before_forces(StepPlan<Real>& plan) {
   if (plan.transfer.figures().keeps_velocity) {
     plan.nodes.push_back(plan.passes().over_nodes(
         {"velocity before forces", key}, reads(kMomentumBeforeForces), writes(kVelocityBeforeForces),
-        [kernel = plan.kernels->normalize, least_mass = plan.least_mass](const auto& at) {
+        [kernel = plan.kernels->node.normalize, least_mass = plan.least_mass](const auto& at) {
           kernel(at.write(kVelocityBeforeForces), least_mass);
         }));
     return;
@@ -256,7 +273,7 @@ void add_velocity_before_forces(StepPlan<Real>& plan) {
   template void add_trial(const MaterialRuntime<Real>&, bool, SetPasses<Real>);                 \
   template void add_return_map(const MaterialRuntime<Real>&, SetPasses<Real>);                  \
   template void add_yield_surface(const MaterialRuntime<Real>&, SetPasses<Real>);               \
-  template void add_shaped_return_map(const MaterialRuntime<Real>&, SetPasses<Real>);           \
+  template void add_return_map_per_particle(const MaterialRuntime<Real>&, SetPasses<Real>);     \
   template void add_normalize(StepPlan<Real>&);                                                 \
   template void add_velocity_before_forces(StepPlan<Real>&);
 REPOSE_INSTANTIATE(float)

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "engine/plan/step_plan.h"
+#include "kernels/pass/pass.h"
 
 namespace repose {
 
@@ -16,7 +17,7 @@ Lattice<Real> make_lattice(const State<Real>& state, const TransferChoice& trans
 /// Add to the passes of a set.
 template <class Real>
 void add_stress(const MaterialRuntime<Real>& material, SetPasses<Real> passes);
-/// Tells what kToldVelocity holds, where a pass before it provides that.
+/// Tells what kP2gVelocity holds, where a pass before it provides that.
 template <class Real>
 void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPasses<Real> passes);
 /// `friction`: whether there is a v-tilde beside the nodes' velocity.
@@ -37,7 +38,7 @@ void add_return_map(const MaterialRuntime<Real>& material, SetPasses<Real> passe
 template <class Real>
 void add_yield_surface(const MaterialRuntime<Real>& material, SetPasses<Real> passes);
 template <class Real>
-void add_shaped_return_map(const MaterialRuntime<Real>& material, SetPasses<Real> passes);
+void add_return_map_per_particle(const MaterialRuntime<Real>& material, SetPasses<Real> passes);
 
 /// p -> v = p/m, and which nodes are active.
 template <class Real>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/wording.h"
+#include "engine/base/wording.h"
 
 namespace repose {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/wording.h"
 #include "engine/scene/numerics.h"
-#include "engine/scene/wording.h"
 
 namespace repose {
 namespace {
@@ -24,16 +24,17 @@ constexpr Choice kAttributes[] = {
     {"channels", "every number per particle that an effect keeps, by its own name"},
     {"age", "s since a particle began, with the scene or from an emitter; asks for the scene's key \"age\""}};
 constexpr double kFinestVoxel = 1.0 / 16.0;  // of files, spacings
-/// One alternative per material of the list; choosing one makes it the material's law. What yields may also
-/// have the keys of the effects that act on sand.
+
+/// One alternative per material of the list; choosing one makes it the material's law. What has a cone may also
+/// have the keys of the effects that act on it.
 template <std::size_t... k>
 void describe_law(Fields& fields, Scene& scene, MaterialDescription& material, std::index_sequence<k...>) {
   const auto describe_as = [&]<std::size_t chosen>(std::integral_constant<std::size_t, chosen>, Fields& f) {
     MaterialParameters& law = material.parameters;
     if (law.index() != chosen) law.emplace<chosen>();
     std::get<chosen>(law).describe(f);
-    if constexpr (std::variant_alternative_t<chosen, MaterialParameters>::kYields) {
-      for_each_effect(scene.effects, [&](auto& effect) { effect.declare_in_sand(f, material.name); });
+    if constexpr (std::variant_alternative_t<chosen, MaterialParameters>::kHasCone) {
+      for_each_effect(scene.effects, [&](auto& effect) { effect.declare_in_cone(f, material.name); });
     }
   };
   const Alternative laws[] = {{std::variant_alternative_t<k, MaterialParameters>::kName,
@@ -179,19 +180,15 @@ void describe_bodies(Fields& fields, Scene& scene) {
   });
 }
 
-/// Down follows `up` unless the scene, or a host that filled it, says otherwise.
-void turn_gravity(Scene& scene) {
-  Vec3& acceleration = scene.effect<Gravity>().acceleration;
-  if (scene.up == UpAxis::kZ && acceleration == Gravity{}.acceleration) acceleration = Vec3(0.0, 0.0, -9.81);
-}
-
-/// Across plane strain nothing moves, solids neither.
-bool stays_in_plane(const MotionDescription& motion, int flat_axis) {
-  return std::all_of(motion.keys.begin(), motion.keys.end(), [flat_axis](const MotionKey& key) {
-    Vec3 across = key.rotation_axis.normalized();
-    across[flat_axis] = 0.0;
-    return key.translation[flat_axis] == 0.0 && (key.rotation_angle == 0.0 || across.norm() < 1e-9);
-  });
+/// Two sets of particles may not share a name; and without any there is nothing to simulate.
+void check_sets(Fields& fields, const Scene& scene) {
+  for (const Inlet& inlet : inlets(scene)) {
+    fields.check(
+        !is_named(scene.bodies, inlet.name), inlet.key.c_str(),
+        "\"" + inlet.name + "\" is the name of a body; choose another, for both are sets of particles");
+  }
+  fields.check(!scene.bodies.empty() || !inlets(scene).empty(), "bodies",
+               "must hold at least one object, unless there is one in \"emitters\"");
 }
 
 }  // namespace
@@ -218,27 +215,10 @@ void describe(Fields& fields, Scene& scene) {
                 [&](Fields& f) { describe(f, scene.implicit); });
   describe_materials(fields, scene);
   describe_bodies(fields, scene);
-  turn_gravity(scene);
-  const std::vector<std::string> materials = names_of(scene.materials);
-  for_each_effect(scene.effects, [&](auto& effect) {
-    effect.know_materials(materials);
-    effect.declare(fields);
-  });
-  for (const Inlet& inlet : inlets(scene)) {
-    fields.check(
-        !is_named(scene.bodies, inlet.name), inlet.key.c_str(),
-        "\"" + inlet.name + "\" is the name of a body; choose another, for both are sets of particles");
-  }
-  fields.check(!scene.bodies.empty() || !inlets(scene).empty(), "bodies",
-               "must hold at least one object, unless there is one in \"emitters\"");
-  fields.check(
-      !scene.grid.plane_strain || scene.effect<Gravity>().acceleration[*scene.grid.plane_strain] == 0.0,
-      "gravity", "acceleration must be zero along the flat axis (plane_strain)");
-  for (const Collider& collider : scene.effect<Colliders>().list) {
-    fields.check(
-        !scene.grid.plane_strain || stays_in_plane(collider.motion, *scene.grid.plane_strain), "colliders",
-        "motion of \"" + collider.name + "\" must stay in the plane of plane_strain and turn about its axis");
-  }
+  const SceneOutline outline{names_of(scene.materials), scene.grid.plane_strain.value_or(-1),
+                             scene.up == UpAxis::kZ};
+  for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields, outline); });
+  check_sets(fields, scene);
   fields.object("output", given, false, "what is written per frame", [&](Fields& f) {
     describe_output(f, scene.output, scene.grid.spacing, all_keep(scene, kBirth.kName));
   });

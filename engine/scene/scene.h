@@ -1,5 +1,6 @@
-// Repose: a scene as plain data: what to simulate, never how. The reader fills it from a file, a host can
-// fill it by hand, the compiler turns it into a step plan. SI units, angles in degrees.
+// Repose: a scene as plain data: what to simulate, never how. The reader (engine/reading) fills it from a file,
+// a host can fill it by hand, the compiler (engine/compiler) turns it into a step plan. SI units, angles in
+// degrees.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +15,10 @@
 #include "engine/geometry/seeding.h"
 #include "engine/geometry/shape.h"
 #include "engine/plan/clock.h"
-#include "kernels/layout/stencil.h"
+#include "engine/plan/implicit_settings.h"
+#include "engine/plan/transfer_choice.h"
+#include "engine/scene/points_wanted.h"
 #include "kernels/material/materials.h"
-#include "kernels/transfer/transfers.h"
 
 namespace repose {
 
@@ -47,7 +49,7 @@ struct GridDescription {
 enum class Integrator {
   kExplicit,  ///< symplectic: short steps, each cheap
   kImplicit,  ///< backward Euler: long steps, each solved for
-  kAuto,      ///< whichever should take less time (engine/scene/integrator.h)
+  kAuto,      ///< whichever should take less time (engine/compiler/integrator.h)
 };
 
 struct TimeDescription {
@@ -76,9 +78,6 @@ struct MaterialDescription {
   const Elasticity& elasticity() const {
     return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
   }
-  bool yields() const {
-    return std::visit([](const auto& p) { return std::decay_t<decltype(p)>::kYields; }, parameters);
-  }
 };
 
 /// A solid filled with particles of one material.
@@ -92,10 +91,6 @@ struct BodyDescription {
   Vec3 velocity{0, 0, 0};          ///< m/s
   Vec3 angular_velocity{0, 0, 0};  ///< rad/s about the centre of the shape's bounds
 };
-
-/// What points may carry beside position, velocity, id and radius; computed from the state when it is written.
-/// Shapes and units: engine/simulation/points.h.
-enum class OutputAttribute { kStress, kPressure, kElasticStrain, kDensity, kSpeed, kChannels, kAge };
 
 /// The surface of the material as a level set.
 struct SurfaceDescription {
@@ -157,7 +152,7 @@ struct Scene {
 
   Places places;
   std::string folder;     ///< where relative paths start
-  std::string identity;   ///< what a state of it depends on (engine/scene/identity.h); what is hashed
+  std::string identity;   ///< what a state of it depends on (engine/reading/identity.h); what is hashed
   std::string canonical;  ///< all of it as compact JSON after overrides and expressions; kept beside a run
 };
 

@@ -8,10 +8,30 @@
 namespace repose {
 namespace {
 
+/// Sums over particles.
+struct Sums : Diagnostics {
+  Vec3 momentum{0, 0, 0}, angular_momentum{0, 0, 0}, first_moment{0, 0, 0};
+  Bounds box;
+
+  Diagnostics finish(const Vec3& gravity) {
+    Diagnostics& report = *this;
+    report.momentum = to_triple(momentum);
+    report.angular_momentum = to_triple(angular_momentum);
+    if (particles > 0) {
+      report.lower = to_triple(box.lower);
+      report.upper = to_triple(box.upper);
+    }
+    const Vec3 center = mass > 0.0 ? Vec3(first_moment / mass) : first_moment;
+    report.center_of_mass = to_triple(center);
+    report.potential_energy = -mass * gravity.dot(center);
+    return report;
+  }
+};
+
 /// Adds one particle to the sums of its block.
 template <class Real>
 void add_particle(const ParticleSet<Real>& set, std::size_t p, const MaterialDescription& material,
-                  const Vec3& x, double affine_inertia, Diagnostics& sums) {
+                  const Vec3& x, double affine_inertia, Sums& sums) {
   const double mass = set.particle_mass;
   Vec3 v;
   Mat3 c;
@@ -29,13 +49,13 @@ void add_particle(const ParticleSet<Real>& set, std::size_t p, const MaterialDes
   // B = C D; its axial part is the angular momentum that the particle carries within (Jiang et al. 2015).
   const Vec3 axial(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
   sums.angular_momentum += mass * (x.cross(v) + affine_inertia * axial);
-  sums.center_of_mass += mass * x;
-  sums.lower = sums.lower.cwiseMin(x);
-  sums.upper = sums.upper.cwiseMax(x);
+  sums.first_moment += mass * x;
+  sums.box.lower = sums.box.lower.cwiseMin(x);
+  sums.box.upper = sums.box.upper.cwiseMax(x);
   sums.max_speed = std::max(sums.max_speed, v.norm());
 }
 
-void note_depth(const std::vector<Solid>& solids, const Vec3& x, std::uint32_t id, Diagnostics& sums) {
+void note_depth(const std::vector<Solid>& solids, const Vec3& x, std::uint32_t id, Sums& sums) {
   for (const Solid& solid : solids) {
     const double depth = -solid.distance(x);
     if (depth <= sums.deepest) continue;
@@ -45,7 +65,7 @@ void note_depth(const std::vector<Solid>& solids, const Vec3& x, std::uint32_t i
   }
 }
 
-void merge(const Diagnostics& block, Diagnostics& sums) {
+void merge(const Sums& block, Sums& sums) {
   if (block.particles == 0) return;
   sums.particles += block.particles;
   sums.mass += block.mass;
@@ -55,9 +75,9 @@ void merge(const Diagnostics& block, Diagnostics& sums) {
   sums.elastic_energy += block.elastic_energy;
   sums.momentum += block.momentum;
   sums.angular_momentum += block.angular_momentum;
-  sums.center_of_mass += block.center_of_mass;
-  sums.lower = sums.lower.cwiseMin(block.lower);
-  sums.upper = sums.upper.cwiseMax(block.upper);
+  sums.first_moment += block.first_moment;
+  sums.box.lower = sums.box.lower.cwiseMin(block.box.lower);
+  sums.box.upper = sums.box.upper.cwiseMax(block.box.upper);
   sums.max_speed = std::max(sums.max_speed, block.max_speed);
   if (block.deepest > sums.deepest) {
     sums.deepest = block.deepest;
@@ -66,41 +86,31 @@ void merge(const Diagnostics& block, Diagnostics& sums) {
   }
 }
 
-Diagnostics empty_sums() {
-  Diagnostics sums;
-  sums.lower = Bounds().lower;
-  sums.upper = Bounds().upper;
-  return sums;
-}
-
 }  // namespace
 
 template <class Real>
 Diagnostics diagnose(const Scene& scene, const std::vector<Solid>& solids, const State<Real>& state,
                      Threads& threads) {
-  const auto owners = state.grid.owners();
-  std::vector<Diagnostics> blocks(owners.size(), empty_sums());
+  const auto occupied_blocks = state.grid.occupied_blocks();
+  std::vector<Sums> blocks(occupied_blocks.size());
   // D, the second moment of a stencil about its particle.
   const double inverse_d = kStencilFigures[static_cast<std::size_t>(scene.grid.stencil)].inverse_d;
   const double affine_inertia = state.spacing * state.spacing / inverse_d;
-  threads.for_each(owners.size(), [&](std::size_t owner) {
-    const Index3 block = state.grid.coordinates_of_owner(owner);
+  threads.for_each(occupied_blocks.size(), [&](std::size_t occupied) {
+    const Index3 block = state.grid.occupied_coordinates(occupied);
     const bool near = any_near(solids, state, block);
     for (const auto& set : state.sets) {
       const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
         const Vec3 x = state.world(block, set, p);
-        add_particle(set, p, material, x, affine_inertia, blocks[owner]);
-        if (near) note_depth(solids, x, set.id[p], blocks[owner]);
+        add_particle(set, p, material, x, affine_inertia, blocks[occupied]);
+        if (near) note_depth(solids, x, set.id[p], blocks[occupied]);
       }
     }
   });
-  Diagnostics sums = empty_sums();
-  for (const Diagnostics& block : blocks) merge(block, sums);
-  if (sums.particles == 0) sums.lower = sums.upper = Vec3::Zero();
-  if (sums.mass > 0.0) sums.center_of_mass /= sums.mass;
-  sums.potential_energy = -sums.mass * scene.effect<Gravity>().acceleration.dot(sums.center_of_mass);
-  return sums;
+  Sums sums;
+  for (const Sums& block : blocks) merge(block, sums);
+  return sums.finish(scene.effect<Gravity>().acceleration);
 }
 
 template <class Real>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/figures.h"
+#include "engine/compiler/figures.h"
 #include "engine/simulation/points.h"
 
 namespace repose {

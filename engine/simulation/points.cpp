@@ -63,6 +63,8 @@ void for_each_stress(const Source<Real>& source, Visit visit) {
           for (std::size_t k = 0; k < kStrainComponents; ++k) {
             std::copy_n(source.set.strain[k].data() + first, in.count, in.strain[k]);
           }
+          for (std::size_t k = 0; k < source.set.law_channels; ++k)  // read, as kernels of stress do
+            in.own[k] = const_cast<Real*>(source.set.extra[k].values.data() + first);
           source.kernels.stress(in);
           for (std::size_t i = 0; i < in.count; ++i) {
             std::array<double, 6> tau;
@@ -181,10 +183,10 @@ void add_attribute(OutputAttribute wanted, const std::vector<Source<Real>>& sour
 template <class Real>
 void put_positions(const State<Real>& state, const Source<Real>& source, PointCloud& cloud) {
   const ParticleSet<Real>& set = source.set;
-  const auto owners = state.grid.owners();
-  for (std::size_t owner = 0; set.count > 0 && owner < owners.size(); ++owner) {
-    const Index3 block = state.grid.coordinates_of_owner(owner);
-    for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+  const auto occupied_blocks = state.grid.occupied_blocks();
+  for (std::size_t occupied = 0; set.count > 0 && occupied < occupied_blocks.size(); ++occupied) {
+    const Index3 block = state.grid.occupied_coordinates(occupied);
+    for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
       const Vec3 x = state.world(block, set, p);
       cloud.position[source.row[p]] = {x[0], x[1], x[2]};
     }

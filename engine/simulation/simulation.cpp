@@ -7,11 +7,16 @@
 #include <new>
 #include <thread>
 
+#include "engine/compiler/compiler.h"
 #include "engine/io/checkpoint.h"
 #include "engine/plan/frame_clock.h"
+#include "engine/simulation/diagnostics.h"
 #include "engine/simulation/memory.h"
+#include "engine/simulation/points.h"
 #include "engine/simulation/warnings.h"
 #include "engine/state/state_hash.h"
+#include "engine/step/stepper.h"
+#include "kernels/pass/pass.h"
 
 namespace repose {
 namespace {
@@ -23,15 +28,15 @@ std::uint64_t fnv1a(const std::string& text) {
   return hash;
 }
 
-std::string describe_offender(const Offender& offender, const StepReport& report) {
+std::string describe_failure(const FailedParticle& particle, const StepReport& report) {
   char text[512];
   std::snprintf(text, sizeof text,
                 "physics gave out: particle %u of '%s' at (%.4g, %.4g, %.4g) m %s, even in a step of %.3g s "
                 "(velocity %.3g m/s, trial %.3g m/s, det(I + dt grad v) = %.3g); smaller time.sound or a finer "
                 "grid.spacing may help",
-                offender.id, offender.set.c_str(), offender.position[0], offender.position[1],
-                offender.position[2], offender.reason.c_str(), report.dt, offender.velocity.norm(),
-                offender.trial_velocity.norm(), offender.determinant);
+                particle.id, particle.set.c_str(), particle.position[0], particle.position[1],
+                particle.position[2], particle.reason.c_str(), report.dt, to_vec3(particle.velocity).norm(),
+                to_vec3(particle.trial_velocity).norm(), particle.determinant);
   return text;
 }
 
@@ -88,9 +93,9 @@ class SimulationOf final : public Simulation {
   std::size_t particles() const override { return state_.particles(); }
   std::size_t particles_asleep() const override {
     std::size_t sum = 0;
-    for (std::size_t owner = 0; owner < state_.rest.asleep.size(); ++owner) {
-      if (state_.rest.asleep[owner] == 0) continue;
-      for (const auto& set : state_.sets) sum += set.begin[owner + 1] - set.begin[owner];
+    for (std::size_t occupied = 0; occupied < state_.rest.asleep.size(); ++occupied) {
+      if (state_.rest.asleep[occupied] == 0) continue;
+      for (const auto& set : state_.sets) sum += set.begin[occupied + 1] - set.begin[occupied];
     }
     return sum;
   }
@@ -109,8 +114,8 @@ class SimulationOf final : public Simulation {
   bool sound() const override { return sound_; }
   const Profile& profile() const override { return stepper_.profile(); }
   void reset_profile() override { stepper_.reset_profile(); }
-  const std::optional<Offender>& offender() const override { return offender_; }
-  std::vector<std::pair<std::string, PassDescription>> passes() const override;
+  const std::optional<FailedParticle>& failed_particle() const override { return failed_; }
+  std::vector<PassReport> passes() const override;
   std::vector<Measurement> measurements() const override {
     std::vector<Measurement> list;
     stepper_.plan().for_each_measure(state_.tallies.data(),
@@ -161,11 +166,11 @@ class SimulationOf final : public Simulation {
   Result<StepReport> try_step(double remaining) {
     return unless_memory_ends([&]() -> Result<StepReport> {
       StepReport report = stepper_.step(state_, remaining);
-      offender_ = report.offender;
+      failed_ = report.failed;
       if (report.error) return refuse(*report.error);
       if (report.accepted) return report;
-      if (!report.offender) return Error{ErrorKind::kPhysics, describe_unsolved(report), scene_.name};
-      return Error{ErrorKind::kPhysics, describe_offender(*report.offender, report), scene_.name};
+      if (!report.failed) return Error{ErrorKind::kPhysics, describe_unsolved(report), scene_.name};
+      return Error{ErrorKind::kPhysics, describe_failure(*report.failed, report), scene_.name};
     });
   }
 
@@ -184,7 +189,7 @@ class SimulationOf final : public Simulation {
   std::vector<Solid> solids_;
   State<Real> state_;
   Stepper<Real> stepper_;
-  std::optional<Offender> offender_;
+  std::optional<FailedParticle> failed_;
   std::vector<std::string> warnings_;
   bool warned_of_speed_ = false;
   bool sound_ = true;
@@ -235,11 +240,18 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   return frame;
 }
 
+std::vector<std::string> names_of(const std::vector<HandleInfo>& handles) {
+  std::vector<std::string> names;
+  for (const HandleInfo& handle : handles) names.emplace_back(handle.name);
+  return names;
+}
+
 template <class Real>
-std::vector<std::pair<std::string, PassDescription>> SimulationOf<Real>::passes() const {
-  std::vector<std::pair<std::string, PassDescription>> list;
+std::vector<PassReport> SimulationOf<Real>::passes() const {
+  std::vector<PassReport> list;
   StepPlan<Real>::for_each_pass(stepper_.plan(), [&](const char* phase, int set, const PassDescription& pass) {
-    list.emplace_back(set < 0 ? phase : phase + (" " + state_.sets[static_cast<std::size_t>(set)].name), pass);
+    const std::string where = set < 0 ? phase : phase + (" " + state_.sets[static_cast<std::size_t>(set)].name);
+    list.push_back({where, pass.name, pass.reason, pass.effect, names_of(pass.reads), names_of(pass.writes)});
   });
   return list;
 }

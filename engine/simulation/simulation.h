@@ -1,23 +1,31 @@
 // Repose: a simulation as a host sees it: made from a scene, advanced by steps or frames, asked for points and
-// figures. It owns its threads and touches nothing of the process: no signal, no exit, no global.
+// figures. It owns its threads and touches nothing of the process: no signal, no exit, no global. This header
+// brings in no library and nothing of how steps are made (tests/engine/simulation/host_header.py counts).
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/profile.h"
 #include "engine/base/result.h"
-#include "engine/effect/solid.h"
-#include "engine/scene/compiler.h"
-#include "engine/scene/scene.h"
-#include "engine/simulation/diagnostics.h"
-#include "engine/simulation/points.h"
-#include "engine/step/stepper.h"
+#include "engine/compiler/integrator_choice.h"
+#include "engine/io/point_cloud.h"
+#include "engine/plan/report.h"
+#include "engine/scene/points_wanted.h"
+#include "engine/simulation/reports.h"
+#include "engine/state/counters.h"
+#include "engine/step/memory_use.h"
+#include "engine/step/step_report.h"
+#include "kernels/pass/target.h"
 
 namespace repose {
+
+struct Scene;  // engine/scene/scene.h, for hosts that fill one by hand; engine/reading/reader.h for the others
+struct Solid;  // engine/effect/solid.h
 
 struct SimulationOptions {
   int threads = 0;  ///< 0: as many as the machine has
@@ -25,21 +33,6 @@ struct SimulationOptions {
   bool allow_outside_paths = false;
   /// Bytes that the simulation may take, with what writing its frames takes; 0: 85 % of the machine's memory.
   double memory_limit = 0.0;
-};
-
-/// What a frame took.
-struct FrameReport {
-  std::int64_t frame = 0;  ///< the frame that is now complete
-  double time = 0.0;       ///< s
-  bool resumed = false;    ///< it was begun before: what it took until then is in none of the figures below
-  std::int64_t steps = 0;
-  double least_dt = 0.0, largest_dt = 0.0;                    ///< s
-  std::array<std::int64_t, kLimits> limits{};                 ///< steps bound by each Limit
-  std::int64_t redone = 0;                                    ///< halvings
-  std::string first_refusal;                                  ///< why the first of them; empty without any
-  std::int64_t newton_iterations = 0, linear_iterations = 0;  ///< of implicit steps that were made
-  double seconds = 0.0;                                       ///< wall time
-  Profile profile;                                            ///< wall time per phase
 };
 
 /// Called after each step; false stops the frame at once, with the state as it is.
@@ -55,9 +48,9 @@ class Simulation {
   virtual Result<StepReport> step() = 0;
 
   /// Steps to the end of the next frame. Error 70 when the physics gives out: the message names the particle
-  /// and what would happen to it; offender() tells more. The state is then that of the last accepted step.
-  /// Error 78 when the grid, or what emitters make, needs more memory than may be used, and when ids are used
-  /// up; sound() tells whether the state can still be saved.
+  /// and what would happen to it; failed_particle() tells more. The state is then that of the last accepted
+  /// step. Error 78 when the grid, or what emitters make, needs more memory than may be used, and when ids are
+  /// used up; sound() tells whether the state can still be saved.
   virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
 
   /// Whether the state is that of the last accepted step; false when memory ran out in the midst of a change.
@@ -78,9 +71,9 @@ class Simulation {
   virtual double writing_bytes() const = 0;
   virtual const Profile& profile() const = 0;
   virtual void reset_profile() = 0;
-  virtual const std::optional<Offender>& offender() const = 0;
-  /// The passes of a step, in order, each with the phase it runs in.
-  virtual std::vector<std::pair<std::string, PassDescription>> passes() const = 0;
+  virtual const std::optional<FailedParticle>& failed_particle() const = 0;
+  /// The passes of a step, in order.
+  virtual std::vector<PassReport> passes() const = 0;
   /// What the scene's probes have measured: over the frame that was completed last, or since its begin where
   /// steps went on from there; steps that end on no frame count on from the last one that did.
   virtual std::vector<Measurement> measurements() const = 0;

@@ -24,12 +24,12 @@ struct Inside {
 
 template <class Real>
 Inside inside_block(const std::vector<Solid>& solids, const State<Real>& state, const ParticleSet<Real>& set,
-                    std::size_t owner) {
+                    std::size_t occupied) {
   Inside inside;
-  const Index3 block = state.grid.coordinates_of_owner(owner);
+  const Index3 block = state.grid.occupied_coordinates(occupied);
   if (!any_near(solids, state, block)) return inside;
   const double tolerated = kToleratedCells * state.spacing;
-  for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+  for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
     const Vec3 x = state.world(block, set, p);
     double deepest = tolerated;
     for (const Solid& solid : solids) {
@@ -72,7 +72,7 @@ bool reaches_depth(const Solid& solid, const Vec3& x, const Vec3& half, double d
 template <class Real>
 struct Fastest {
   const ParticleSet<Real>* set = nullptr;
-  std::size_t owner = 0, particle = 0;
+  std::size_t occupied = 0, particle = 0;
   double speed = -1.0;  // m/s
 };
 
@@ -80,10 +80,10 @@ template <class Real>
 Fastest<Real> find_fastest(const State<Real>& state) {
   Fastest<Real> fastest;
   for (const auto& set : state.sets) {
-    for (std::size_t owner = 0; owner + 1 < set.begin.size(); ++owner) {
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
         const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
-        if (v.norm() > fastest.speed) fastest = {&set, owner, p, v.norm()};
+        if (v.norm() > fastest.speed) fastest = {&set, occupied, p, v.norm()};
       }
     }
   }
@@ -136,10 +136,11 @@ std::vector<std::string> seeding_warnings(const std::vector<Solid>& solids, cons
                                           Threads& threads) {
   std::vector<std::string> warnings;
   if (solids.empty()) return warnings;
-  std::vector<Inside> blocks(state.grid.owners().size());
+  std::vector<Inside> blocks(state.grid.occupied_blocks().size());
   for (const auto& set : state.sets) {
-    threads.for_each(blocks.size(),
-                     [&](std::size_t owner) { blocks[owner] = inside_block(solids, state, set, owner); });
+    threads.for_each(blocks.size(), [&](std::size_t occupied) {
+      blocks[occupied] = inside_block(solids, state, set, occupied);
+    });
     Inside all;
     for (const Inside& block : blocks) {
       all.count += block.count;
@@ -166,7 +167,7 @@ std::optional<std::string> speed_warning(const StepPlan<Real>& plan, const State
   if (cut.dt >= kShareWorthAWord * allowed) return std::nullopt;
   const Fastest<Real> fastest = find_fastest(state);
   if (fastest.set == nullptr) return std::nullopt;
-  const Vec3 x = state.world(state.grid.coordinates_of_owner(fastest.owner), *fastest.set, fastest.particle);
+  const Vec3 x = state.world(state.grid.occupied_coordinates(fastest.occupied), *fastest.set, fastest.particle);
   char text[320];
   std::snprintf(
       text, sizeof text,

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/solve/solve_report.h"
+
 namespace repose {
 
 /// A linear system A x = b with a preconditioner P, symmetric and positive definite. Residuals r = b - A x are
@@ -77,20 +79,6 @@ struct Stop {
   bool history = false;   ///< whether to report |r|_P of every iteration; allocates
   double enough = 0.0;    ///< share of the start at which a breakdown needs no lower rung of a ladder
 };
-
-/// How a solve ended.
-enum class SolveStatus {
-  kConverged,  ///< the residual, computed anew from x, is within the tolerance
-  kCapped,     ///< all iterations were used
-  kStagnated,  ///< what is left of the residual is rounding
-  kSingular,   ///< A P r = 0 but for rounding: A is singular, and if it is symmetric no x has a smaller |r|_P
-  kBrokeDown,  ///< the method cannot go on from x: r^T P A P r = 0, or P is not positive definite
-  kNotFinite,  ///< a value that is not finite; x is worth nothing
-};
-constexpr const char* status_name(SolveStatus status) {
-  constexpr const char* kNames[] = {"converged", "capped", "stagnated", "singular", "broke down", "not finite"};
-  return kNames[static_cast<int>(status)];
-}
 
 /// How far down the ladder of engine/solve/linear_solve.h a solve went. A solver by itself is on the first two.
 enum class SolveRung { kFirst, kRestarted, kMinimalResidual, kShifted };

@@ -31,34 +31,13 @@
 #include <utility>
 #include <vector>
 
-namespace repose {
+#include "engine/solve/solve_report.h"
 
-enum class NewtonEnd {
-  kConverged,
-  kStalled,     ///< within kNearly tolerances, and no nearer: rounding
-  kIterations,  ///< the cap was met
-  kNoDescent,   ///< no length along the step lowers the residual, or the energy
-  kUnsolved,    ///< the linear solver gave up
-  kUndefined,   ///< the residual has no value at the start, or after contacts changed
-};
-constexpr bool solved(NewtonEnd end) {
-  return end == NewtonEnd::kConverged || end == NewtonEnd::kStalled;
-}
+namespace repose {
 
 struct NewtonStop {
   double tolerance = 0.0;  ///< of |r|, over the problem's scale
   int iterations = 40;
-};
-
-struct NewtonReport {
-  NewtonEnd end = NewtonEnd::kConverged;
-  int iterations = 0;
-  int linear_iterations = 0;
-  int shortened = 0;               ///< how often a length was shortened
-  int contact_changes = 0;         ///< iterations after which constraints changed
-  double first = 0.0, last = 0.0;  ///< |r|
-  double tolerance = 0.0;          ///< of |r|, at the end
-  std::vector<double> history;     ///< |r| of each iteration
 };
 
 template <class Problem>

@@ -65,14 +65,14 @@ BlockGrid::~BlockGrid() = default;
 BlockGrid::BlockGrid(BlockGrid&&) noexcept = default;
 BlockGrid& BlockGrid::operator=(BlockGrid&&) noexcept = default;
 
-void BlockGrid::build(std::span<const Index3> owners, const Topology& topology) {
+void BlockGrid::build(std::span<const Index3> occupied_blocks, const Topology& topology) {
   MaskTree& mask = tree_->mask;
   mask.clear();
   {
     openvdb::tree::ValueAccessor<MaskTree> accessor(mask);
-    for (const Index3& owner : owners) {
-      accessor.touchLeaf(first_node(topology.wrap(owner)));
-      for_each_neighbour(topology.wrap(owner), topology,
+    for (const Index3& occupied : occupied_blocks) {
+      accessor.touchLeaf(first_node(topology.wrap(occupied)));
+      for_each_neighbour(topology.wrap(occupied), topology,
                          [&](int, const Index3& block) { accessor.touchLeaf(first_node(block)); });
     }
   }
@@ -89,21 +89,22 @@ void BlockGrid::build(std::span<const Index3> owners, const Topology& topology) 
     const Leaf* leaf = accessor.probeConstLeaf(first_node(block));
     return leaf == nullptr ? -1 : static_cast<std::int32_t>(leaf->transientData());
   };
-  owner_of_block_.assign(blocks_.size(), -1);
-  for (const Index3& owner : owners) owner_of_block_[static_cast<std::size_t>(find(topology.wrap(owner)))] = 0;
-  owners_.clear();
+  occupied_of_block_.assign(blocks_.size(), -1);
+  for (const Index3& occupied : occupied_blocks)
+    occupied_of_block_[static_cast<std::size_t>(find(topology.wrap(occupied)))] = 0;
+  occupied_.clear();
   neighbours_.clear();
   for (auto& colour : colours_) colour.clear();
   for (std::size_t block = 0; block < blocks_.size(); ++block) {
-    if (owner_of_block_[block] < 0) continue;
-    const auto owner = static_cast<std::int32_t>(owners_.size());
-    owner_of_block_[block] = owner;
-    owners_.push_back(static_cast<std::int32_t>(block));
+    if (occupied_of_block_[block] < 0) continue;
+    const auto occupied = static_cast<std::int32_t>(occupied_.size());
+    occupied_of_block_[block] = occupied;
+    occupied_.push_back(static_cast<std::int32_t>(block));
     neighbours_.resize(neighbours_.size() + kNeighbours, -1);
     std::int32_t* table = &neighbours_[neighbours_.size() - kNeighbours];
     const Index3& at = blocks_[block];
     for_each_neighbour(at, topology, [&](int k, const Index3& neighbour) { table[k] = find(neighbour); });
-    colours_[static_cast<std::size_t>((at[0] & 1) * 4 + (at[1] & 1) * 2 + (at[2] & 1))].push_back(owner);
+    colours_[static_cast<std::size_t>((at[0] & 1) * 4 + (at[1] & 1) * 2 + (at[2] & 1))].push_back(occupied);
   }
 }
 
@@ -112,9 +113,9 @@ std::int32_t BlockGrid::find_block(const Index3& block) const {
   return leaf == nullptr ? -1 : static_cast<std::int32_t>(leaf->transientData());
 }
 
-std::int32_t BlockGrid::find_owner(const Index3& block) const {
+std::int32_t BlockGrid::find_occupied(const Index3& block) const {
   const std::int32_t found = find_block(block);
-  return found < 0 ? -1 : owner_of_block_[static_cast<std::size_t>(found)];
+  return found < 0 ? -1 : occupied_of_block_[static_cast<std::size_t>(found)];
 }
 
 std::uint64_t BlockGrid::active_nodes() const {
@@ -125,7 +126,7 @@ std::uint64_t BlockGrid::active_nodes() const {
 
 std::size_t BlockGrid::bytes() const {
   std::size_t tables = blocks_.capacity() * sizeof(Index3) + active_.capacity() * sizeof(std::uint64_t*) +
-                       (owners_.capacity() + owner_of_block_.capacity() + neighbours_.capacity()) * 4;
+                       (occupied_.capacity() + occupied_of_block_.capacity() + neighbours_.capacity()) * 4;
   for (const auto& colour : colours_) tables += colour.capacity() * 4;
   return tables + static_cast<std::size_t>(tree_->mask.memUsage());
 }

@@ -32,31 +32,37 @@ class BlockGrid {
   BlockGrid(BlockGrid&&) noexcept;
   BlockGrid& operator=(BlockGrid&&) noexcept;
 
-  /// Makes the blocks that hold particles, and those around them that they can reach. `owners` may repeat.
-  void build(std::span<const Index3> owners, const Topology& topology);
+  /// Makes the blocks that hold particles, and those around them that they can reach. `occupied blocks` may
+  /// repeat.
+  void build(std::span<const Index3> occupied_blocks, const Topology& topology);
 
   /// All blocks of nodes, in leaf order.
   std::span<const Index3> blocks() const { return blocks_; }
   std::size_t size() const { return blocks_.size(); }
 
   /// The blocks that hold particles: their positions in blocks(), ascending.
-  std::span<const std::int32_t> owners() const { return owners_; }
-  /// The block of an owner: its position in blocks(), and its coordinates.
-  std::size_t block_of_owner(std::size_t owner) const { return static_cast<std::size_t>(owners_[owner]); }
-  const Index3& coordinates_of_owner(std::size_t owner) const { return blocks_[block_of_owner(owner)]; }
-  /// The 27 blocks around an owner, in the order of neighbour_index(): positions in blocks(), or -1.
-  std::span<const std::int32_t, kNeighbours> neighbours(std::size_t owner) const {
-    return std::span<const std::int32_t, kNeighbours>(&neighbours_[owner * kNeighbours], kNeighbours);
+  std::span<const std::int32_t> occupied_blocks() const { return occupied_; }
+  /// The block of an occupied block: its position in blocks(), and its coordinates.
+  std::size_t block_of_occupied(std::size_t occupied) const {
+    return static_cast<std::size_t>(occupied_[occupied]);
   }
-  /// The owners of one of the 8 colours. Two of a colour lie at least two blocks apart along some axis.
+  const Index3& occupied_coordinates(std::size_t occupied) const {
+    return blocks_[block_of_occupied(occupied)];
+  }
+  /// The 27 blocks around an occupied block, in the order of neighbour_index(): positions in blocks(), or -1.
+  std::span<const std::int32_t, kNeighbours> neighbours(std::size_t occupied) const {
+    return std::span<const std::int32_t, kNeighbours>(&neighbours_[occupied * kNeighbours], kNeighbours);
+  }
+  /// The occupied blocks of one of the 8 colours. Two of a colour lie at least two blocks apart along some
+  /// axis.
   std::span<const std::int32_t> colour(int colour) const { return colours_[static_cast<std::size_t>(colour)]; }
 
-  /// The owner that a block is, or -1.
-  std::int32_t owner_of_block(std::size_t block) const { return owner_of_block_[block]; }
+  /// The occupied block that a block is, or -1.
+  std::int32_t occupied_of_block(std::size_t block) const { return occupied_of_block_[block]; }
   /// The position in blocks() of a block coordinate, or -1.
   std::int32_t find_block(const Index3& block) const;
-  /// The owner at a block coordinate, or -1.
-  std::int32_t find_owner(const Index3& block) const;
+  /// The occupied block at a block coordinate, or -1.
+  std::int32_t find_occupied(const Index3& block) const;
 
   /// The mask word of a block in its leaf: bit x*16 + y*4 + z is set where the node has mass.
   std::uint64_t& active(std::size_t block) { return *active_[block]; }
@@ -71,8 +77,8 @@ class BlockGrid {
   std::unique_ptr<Tree> tree_;
   std::vector<Index3> blocks_;
   std::vector<std::uint64_t*> active_;
-  std::vector<std::int32_t> owners_;
-  std::vector<std::int32_t> owner_of_block_;
+  std::vector<std::int32_t> occupied_;
+  std::vector<std::int32_t> occupied_of_block_;
   std::vector<std::int32_t> neighbours_;
   std::array<std::vector<std::int32_t>, 8> colours_;
 };

@@ -75,12 +75,12 @@ void sort_cells(std::uint64_t* keys, const std::uint32_t* ends) {
 }  // namespace
 
 template <class Real>
-void BlockOrder<Real>::classify(const ParticleSet<Real>& set, std::size_t owner, const Locator<Real>& locator,
-                                Buffers& buffers) const {
-  const std::size_t first = set.begin[owner], last = set.begin[owner + 1];
+void BlockOrder<Real>::classify(const ParticleSet<Real>& set, std::size_t occupied,
+                                const Locator<Real>& locator, Buffers& buffers) const {
+  const std::size_t first = set.begin[occupied], last = set.begin[occupied + 1];
   std::uint8_t* const cells = buffers.cell.data();
   locate(set, first, last, locator, cells);
-  OldOwner& old = buffers.old[owner];
+  OldOccupied& old = buffers.old[occupied];
   Departures& departures = old.departures;
   departures.fill(0);
   old.in_order = in_order(cells, set.id.data(), first, last);
@@ -101,20 +101,20 @@ void BlockOrder<Real>::classify(const ParticleSet<Real>& set, std::size_t owner,
 /// Whether the blocks that hold particles are those that held some before. Few blocks lose particles to others,
 /// so this is not worth threads.
 template <class Real>
-bool BlockOrder<Real>::same_owners(const State<Real>& state) {
-  const std::size_t owners = state.grid.owners().size();
-  weight_.assign(owners, 0);
+bool BlockOrder<Real>::same_occupied(const State<Real>& state) {
+  const std::size_t all = state.grid.occupied_blocks().size();
+  weight_.assign(all, 0);
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    for (std::size_t owner = 0; owner < owners; ++owner) {
-      const Departures& departures = buffers_[k].old[owner].departures;
+    for (std::size_t occupied = 0; occupied < all; ++occupied) {
+      const Departures& departures = buffers_[k].old[occupied].departures;
       const auto& begin = state.sets[k].begin;
-      weight_[owner] += begin[owner + 1] - begin[owner] - departures[kNeighbours];
+      weight_[occupied] += begin[occupied + 1] - begin[occupied] - departures[kNeighbours];
       if (departures[kNeighbours] == 0) continue;
-      const auto neighbours = state.grid.neighbours(owner);
+      const auto neighbours = state.grid.neighbours(occupied);
       for (std::size_t n = 0; n < kNeighbours; ++n) {
         if (departures[n] == departures[n + 1]) continue;
         const std::int32_t target =
-            neighbours[n] < 0 ? -1 : state.grid.owner_of_block(static_cast<std::size_t>(neighbours[n]));
+            neighbours[n] < 0 ? -1 : state.grid.occupied_of_block(static_cast<std::size_t>(neighbours[n]));
         if (target < 0) return false;
         weight_[static_cast<std::size_t>(target)] += departures[n + 1] - departures[n];
       }
@@ -126,25 +126,25 @@ bool BlockOrder<Real>::same_owners(const State<Real>& state) {
 /// Makes the grid of the blocks that hold particles now, and source_ for it.
 template <class Real>
 bool BlockOrder<Real>::update_grid(State<Real>& state) {
-  const bool same = same_owners(state);
-  const std::size_t owners = state.grid.owners().size();
-  old_blocks_.resize(owners);
-  for (std::size_t owner = 0; owner < owners; ++owner) {
-    old_blocks_[owner] = state.grid.coordinates_of_owner(owner);
+  const bool same = same_occupied(state);
+  const std::size_t all = state.grid.occupied_blocks().size();
+  old_blocks_.resize(all);
+  for (std::size_t occupied = 0; occupied < all; ++occupied) {
+    old_blocks_[occupied] = state.grid.occupied_coordinates(occupied);
   }
   if (!same) {
     new_blocks_.clear();
-    for (std::size_t owner = 0; owner < owners; ++owner) {
+    for (std::size_t occupied = 0; occupied < all; ++occupied) {
       std::uint32_t receives = 0;
       for (std::size_t k = 0; k < state.sets.size(); ++k) {
-        const Departures& departures = buffers_[k].old[owner].departures;
+        const Departures& departures = buffers_[k].old[occupied].departures;
         const auto& begin = state.sets[k].begin;
-        if (begin[owner + 1] - begin[owner] > departures[kNeighbours]) receives |= 1u << kSelf;
+        if (begin[occupied + 1] - begin[occupied] > departures[kNeighbours]) receives |= 1u << kSelf;
         for (std::size_t n = 0; n < kNeighbours; ++n) {
           if (departures[n + 1] > departures[n]) receives |= 1u << n;
         }
       }
-      const Index3& block = old_blocks_[owner];
+      const Index3& block = old_blocks_[occupied];
       for (int n = 0; n < kNeighbours; ++n) {
         if ((receives >> n & 1u) == 0) continue;
         const Index3 away = offset_of(n);
@@ -154,19 +154,20 @@ bool BlockOrder<Real>::update_grid(State<Real>& state) {
     state.grid.build(new_blocks_, state.topology);
   }
   source_.assign(state.grid.size(), -1);
-  for (std::size_t owner = 0; owner < owners; ++owner) {
-    const std::int32_t block = same ? state.grid.owners()[owner] : state.grid.find_block(old_blocks_[owner]);
-    if (block >= 0) source_[static_cast<std::size_t>(block)] = static_cast<std::int32_t>(owner);
+  for (std::size_t occupied = 0; occupied < all; ++occupied) {
+    const std::int32_t block =
+        same ? state.grid.occupied_blocks()[occupied] : state.grid.find_block(old_blocks_[occupied]);
+    if (block >= 0) source_[static_cast<std::size_t>(block)] = static_cast<std::int32_t>(occupied);
   }
   return !same;
 }
 
-/// Calls visit(first, last) for each stretch of movers of set k that come to a new owner.
+/// Calls visit(first, last) for each stretch of movers of set k that come to a new occupied block.
 template <class Real>
 template <class Visit>
-void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k, std::size_t owner,
+void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k, std::size_t occupied,
                                         Visit visit) const {
-  const auto neighbours = state.grid.neighbours(owner);
+  const auto neighbours = state.grid.neighbours(occupied);
   for (std::size_t n = 0; n < kNeighbours; ++n) {
     // Who goes towards n comes from the other side.
     const std::int32_t from = neighbours[kNeighbours - 1 - n];
@@ -179,25 +180,25 @@ void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k,
   }
 }
 
-/// Gives each new owner its share of the range.
+/// Gives each new occupied block its share of the range.
 template <class Real>
 void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Threads& threads) {
   Buffers& buffers = buffers_[k];
-  const std::size_t owners = state.grid.owners().size();
+  const std::size_t all = state.grid.occupied_blocks().size();
   std::vector<std::uint32_t>&begin = buffers.begin, &arrivals = buffers.arrivals_begin;
-  begin.assign(owners + 1, 0);
-  arrivals.assign(owners + 1, 0);
+  begin.assign(all + 1, 0);
+  arrivals.assign(all + 1, 0);
   threads.for_each(
-      owners,
-      [&](std::size_t owner) {
-        for_each_arrival(state, k, owner, [&](std::size_t first, std::size_t last) {
-          arrivals[owner + 1] += static_cast<std::uint32_t>(last - first);
+      all,
+      [&](std::size_t occupied) {
+        for_each_arrival(state, k, occupied, [&](std::size_t first, std::size_t last) {
+          arrivals[occupied + 1] += static_cast<std::uint32_t>(last - first);
         });
-        const std::int32_t source = source_[state.grid.block_of_owner(owner)];
-        begin[owner + 1] = arrivals[owner + 1];
+        const std::int32_t source = source_[state.grid.block_of_occupied(occupied)];
+        begin[occupied + 1] = arrivals[occupied + 1];
         if (source < 0) return;
         const auto old = static_cast<std::size_t>(source);
-        begin[owner + 1] +=
+        begin[occupied + 1] +=
             state.sets[k].begin[old + 1] - state.sets[k].begin[old] - buffers.old[old].departures[kNeighbours];
       },
       64);
@@ -205,19 +206,19 @@ void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Thread
   for (auto& keys : keys_) {  // whichever thread meets the fullest block
     if (keys.size() < most) keys.resize(most + most / 8);
   }
-  for (std::size_t owner = 0; owner < owners; ++owner) {
-    begin[owner + 1] += begin[owner];
-    arrivals[owner + 1] += arrivals[owner];
+  for (std::size_t occupied = 0; occupied < all; ++occupied) {
+    begin[occupied + 1] += begin[occupied];
+    arrivals[occupied + 1] += arrivals[occupied];
   }
-  REPOSE_ASSERT(begin[owners] == state.sets[k].count);
+  REPOSE_ASSERT(begin[all] == state.sets[k].count);
 }
 
-/// Writes the particles that come to an owner, or stay, to the permutation: by cell and then by id.
+/// Writes the particles that come to an occupied block, or stay, to the permutation: by cell and then by id.
 template <class Real>
-void BlockOrder<Real>::sort_owner(const State<Real>& state, std::size_t k, std::size_t owner) {
+void BlockOrder<Real>::sort_occupied(const State<Real>& state, std::size_t k, std::size_t occupied) {
   Buffers& buffers = buffers_[k];
-  const std::size_t begin = buffers.begin[owner], count = buffers.begin[owner + 1] - begin;
-  const std::int32_t source = source_[state.grid.block_of_owner(owner)];
+  const std::size_t begin = buffers.begin[occupied], count = buffers.begin[occupied + 1] - begin;
+  const std::int32_t source = source_[state.grid.block_of_occupied(occupied)];
   std::size_t first = 0, last = 0;  // who was here before
   bool in_order = false;
   if (source >= 0) {
@@ -227,28 +228,28 @@ void BlockOrder<Real>::sort_owner(const State<Real>& state, std::size_t k, std::
     in_order = buffers.old[old].in_order;
   }
   std::uint32_t* const place = buffers.permutation.data() + begin;
-  if (in_order && buffers.arrivals_begin[owner] == buffers.arrivals_begin[owner + 1]) {
+  if (in_order && buffers.arrivals_begin[occupied] == buffers.arrivals_begin[occupied + 1]) {
     for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(first + i);
     return;
   }
   const auto& keys = keys_[static_cast<std::size_t>(Threads::index())];
-  collect(state, k, owner, first, last);
+  collect(state, k, occupied, first, last);
   for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<std::uint32_t>(keys[i]);
 }
 
 /// Fills the thread's keys (id, old place), sorted by cell and key, from the old range [first, last) of the
-/// owner's block and from the arrivals.
+/// occupied block's block and from the arrivals.
 template <class Real>
-void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::size_t owner, std::size_t first,
+void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::size_t occupied, std::size_t first,
                                std::size_t last) {
   Buffers& buffers = buffers_[k];
   const std::uint8_t* const cells = buffers.cell.data();
   const std::uint32_t* const ids = state.sets[k].id.data();
   std::uint32_t* const arrivals = buffers.arrivals.data();
   const std::size_t room = buffers.arrivals.size();
-  std::size_t arrival = buffers.arrivals_begin[owner];
+  std::size_t arrival = buffers.arrivals_begin[occupied];
   const auto for_each_mover = [&](auto visit) {
-    for_each_arrival(state, k, owner, [&](std::size_t from, std::size_t to) {
+    for_each_arrival(state, k, occupied, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) visit(buffers.movers()[i]);
     });
   };
@@ -277,20 +278,20 @@ void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::siz
 template <class Real>
 void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
                                      const Locator<Real>& locator) const {
-  const std::size_t owners = buffers.begin.size() - 1, room = buffers.arrivals.size();
+  const std::size_t all = buffers.begin.size() - 1, room = buffers.arrivals.size();
   const std::uint32_t* const from = buffers.permutation.data();
   const auto move = [&](const auto* old, auto* moved, const auto& value) {
     threads.for_each(
-        owners,
-        [&](std::size_t owner) {
+        all,
+        [&](std::size_t occupied) {
           // What the next block but one waits for from far away; what is near comes by itself.
-          const std::size_t ahead = std::min(owner + 2, owners - 1);
+          const std::size_t ahead = std::min(occupied + 2, all - 1);
           const std::size_t last = std::min<std::size_t>(room, buffers.arrivals_begin[ahead + 1]);
           for (std::size_t i = buffers.arrivals_begin[ahead]; i < last; ++i) {
             __builtin_prefetch(old + buffers.arrivals[i]);
           }
-          const std::size_t end = buffers.begin[owner + 1];
-          for (std::size_t p = buffers.begin[owner]; p < end; ++p) moved[p] = value(old[from[p]]);
+          const std::size_t end = buffers.begin[occupied + 1];
+          for (std::size_t p = buffers.begin[occupied]; p < end; ++p) moved[p] = value(old[from[p]]);
         },
         8);
   };
@@ -316,30 +317,31 @@ void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, T
 template <class Real>
 bool BlockOrder<Real>::order(State<Real>& state, Threads& threads, const Ownership& ownership) {
   const Locator<Real> locator(ownership);
-  const std::size_t sets = state.sets.size(), old_owners = state.grid.owners().size();
+  const std::size_t sets = state.sets.size(), old_count = state.grid.occupied_blocks().size();
   buffers_.resize(sets);
   keys_.resize(static_cast<std::size_t>(threads.count()));
   for (std::size_t k = 0; k < sets; ++k) {
     Buffers& buffers = buffers_[k];
-    buffers.old.resize(old_owners);
+    buffers.old.resize(old_count);
     // As much room as the channels have: a channel and its spare change places.
     const std::size_t count = state.sets[k].count, room = state.sets[k].id.capacity();
     buffers.cell.reserve_uninitialized(count, room);
     buffers.spare.reserve_uninitialized(count, room);
     buffers.permutation.reserve_uninitialized(count, room);
     buffers.arrivals.reserve_uninitialized(count / 8, room / 8);
-    threads.for_each(old_owners, [&](std::size_t owner) { classify(state.sets[k], owner, locator, buffers); });
+    threads.for_each(old_count,
+                     [&](std::size_t occupied) { classify(state.sets[k], occupied, locator, buffers); });
   }
   const bool new_grid = update_grid(state);
-  const std::size_t new_owners = state.grid.owners().size();
+  const std::size_t new_count = state.grid.occupied_blocks().size();
   for (std::size_t k = 0; k < sets; ++k) {
     share_out(state, k, threads);
-    threads.for_each(new_owners, [&](std::size_t owner) { sort_owner(state, k, owner); });
+    threads.for_each(new_count, [&](std::size_t occupied) { sort_occupied(state, k, occupied); });
     move_channels(state.sets[k], buffers_[k], threads, locator);
     state.sets[k].begin.swap(buffers_[k].begin);
   }
   state.nodes.resize(state.grid.size());
-  state.rows_touched.assign(new_owners, 0);
+  state.rows_touched.assign(new_count, 0);
   state.counters.order_due = 0;
   state.counters.runs_when_ordered = -1;
   state.counters.runs_wasted = 0;
@@ -354,7 +356,7 @@ std::size_t BlockOrder<Real>::bytes() const {
   for (const Buffers& buffers : buffers_) {
     sum += buffers.cell.bytes() + buffers.spare.bytes() + buffers.permutation.bytes() +
            buffers.arrivals.bytes() + buffers.arrivals_begin.capacity() * sizeof(std::uint32_t) +
-           buffers.old.capacity() * sizeof(OldOwner) + buffers.begin.capacity() * sizeof(std::uint32_t);
+           buffers.old.capacity() * sizeof(OldOccupied) + buffers.begin.capacity() * sizeof(std::uint32_t);
   }
   return sum;
 }

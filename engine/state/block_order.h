@@ -37,7 +37,7 @@ class BlockOrder {
   /// Where the particles that leave an old block go: offsets of the 27 groups in its range of movers.
   using Departures = std::array<std::uint32_t, kNeighbours + 1>;
 
-  struct OldOwner {
+  struct OldOccupied {
     Departures departures;
     bool in_order;  ///< nobody leaves, and those who stay are sorted
   };
@@ -48,10 +48,10 @@ class BlockOrder {
     /// While sorting, who leaves, by old block and destination; then the target of the channel that is moved.
     AlignedArray<Real> spare;
     AlignedArray<std::uint32_t> permutation;  ///< new place -> old place; at last the ids
-    std::vector<OldOwner> old;                ///< per old owner
-    std::vector<std::uint32_t> begin;         ///< per new owner
-    /// Old places of those who come from another block, per new owner: asked for ahead, since they lie far
-    /// away. Only a hint, so it has room for an eighth of the particles and forgets the rest.
+    std::vector<OldOccupied> old;             ///< per old occupied block
+    std::vector<std::uint32_t> begin;         ///< per new occupied block
+    /// Old places of those who come from another block, per new occupied block: asked for ahead, since they lie
+    /// far away. Only a hint, so it has room for an eighth of the particles and forgets the rest.
     AlignedArray<std::uint32_t> arrivals;
     std::vector<std::uint32_t> arrivals_begin;
 
@@ -59,22 +59,24 @@ class BlockOrder {
     const std::uint32_t* movers() const { return reinterpret_cast<const std::uint32_t*>(spare.data()); }
   };
 
-  void classify(const ParticleSet<Real>& set, std::size_t owner, const Locator<Real>& locator,
+  void classify(const ParticleSet<Real>& set, std::size_t occupied, const Locator<Real>& locator,
                 Buffers& buffers) const;
   bool update_grid(State<Real>& state);
-  bool same_owners(const State<Real>& state);
+  bool same_occupied(const State<Real>& state);
   template <class Visit>
-  void for_each_arrival(const State<Real>& state, std::size_t k, std::size_t owner, Visit visit) const;
+  void for_each_arrival(const State<Real>& state, std::size_t k, std::size_t occupied, Visit visit) const;
   void share_out(const State<Real>& state, std::size_t k, Threads& threads);
-  void sort_owner(const State<Real>& state, std::size_t k, std::size_t owner);
-  void collect(const State<Real>& state, std::size_t k, std::size_t owner, std::size_t first, std::size_t last);
+  void sort_occupied(const State<Real>& state, std::size_t k, std::size_t occupied);
+  void collect(const State<Real>& state, std::size_t k, std::size_t occupied, std::size_t first,
+               std::size_t last);
   void move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
                      const Locator<Real>& locator) const;
 
-  std::vector<Buffers> buffers_;                  // per set
-  std::vector<std::int32_t> source_;              // per block of the new grid: the old owner there, or -1
-  std::vector<std::uint32_t> weight_;             // per old owner: particles after the event, if owners stay
-  std::vector<Index3> old_blocks_, new_blocks_;   // of owners
+  std::vector<Buffers> buffers_;      // per set
+  std::vector<std::int32_t> source_;  // per block of the new grid: the old occupied block there, or -1
+  std::vector<std::uint32_t>
+      weight_;  // per old occupied block: particles after the event, if occupied blocks stay
+  std::vector<Index3> old_blocks_, new_blocks_;   // of occupied blocks
   std::vector<std::vector<std::uint64_t>> keys_;  // per thread
 };
 

@@ -14,9 +14,9 @@ namespace {
 /// Where everything of one set lies before, between and after.
 struct Moves {
   const std::vector<std::uint32_t>& removed;
-  std::vector<std::uint32_t> kept_begin;  // per owner, when those who leave are gone
-  std::vector<std::uint32_t> begin;       // per owner, at the end
-  std::vector<std::uint32_t> by_owner;    // newcomers in the order of their owners
+  std::vector<std::uint32_t> kept_begin;   // per occupied block, when those who leave are gone
+  std::vector<std::uint32_t> begin;        // per occupied block, at the end
+  std::vector<std::uint32_t> by_occupied;  // newcomers in the order of their occupied blocks
 };
 
 template <class T>
@@ -33,12 +33,12 @@ void draw_together(T* values, const std::vector<std::uint32_t>& removed, std::si
 /// The end comes first: a range moves away from the start, onto what has moved already.
 template <class T>
 void move_apart(T* values, const T* newcomers, const Moves& moves) {
-  std::size_t next = moves.by_owner.size();
-  for (std::size_t owner = moves.begin.size() - 1; owner-- > 0;) {
-    const std::size_t from = moves.kept_begin[owner], kept = moves.kept_begin[owner + 1] - from;
-    const std::size_t to = moves.begin[owner], all = moves.begin[owner + 1] - to;
+  std::size_t next = moves.by_occupied.size();
+  for (std::size_t occupied = moves.begin.size() - 1; occupied-- > 0;) {
+    const std::size_t from = moves.kept_begin[occupied], kept = moves.kept_begin[occupied + 1] - from;
+    const std::size_t to = moves.begin[occupied], all = moves.begin[occupied + 1] - to;
     if (to != from && kept > 0) std::memmove(values + to, values + from, kept * sizeof(T));
-    for (std::size_t i = all; i-- > kept;) values[to + i] = newcomers[moves.by_owner[--next]];
+    for (std::size_t i = all; i-- > kept;) values[to + i] = newcomers[moves.by_occupied[--next]];
   }
 }
 
@@ -55,59 +55,62 @@ std::uint32_t staying(const std::vector<std::uint32_t>& removed, std::uint32_t e
   return end - static_cast<std::uint32_t>(gone);
 }
 
-/// The places of a set whose owners are those of `old_owner`: per owner of the grid its number before, or -1.
+/// The places of a set whose occupied blocks are those of `old_occupied`: per occupied block of the grid its
+/// number before, or -1.
 template <class Real>
 Moves plan_moves(const ParticleSet<Real>& set, const SetEdit<Real>& edit, const BlockGrid& grid,
-                 const std::vector<std::int32_t>& old_owner) {
+                 const std::vector<std::int32_t>& old_occupied) {
   Moves moves{edit.removed, {0}, {0}, std::vector<std::uint32_t>(edit.cells.size())};
-  std::vector<std::int32_t> owner_of(edit.cells.size());
-  std::vector<std::uint32_t> arrivals(old_owner.size(), 0);
+  std::vector<std::int32_t> occupied_of(edit.cells.size());
+  std::vector<std::uint32_t> arrivals(old_occupied.size(), 0);
   for (std::size_t i = 0; i < edit.cells.size(); ++i) {
-    owner_of[i] = grid.find_owner(edit.cells[i]);
-    ++arrivals[static_cast<std::size_t>(owner_of[i])];
+    occupied_of[i] = grid.find_occupied(edit.cells[i]);
+    ++arrivals[static_cast<std::size_t>(occupied_of[i])];
   }
-  for (std::size_t owner = 0; owner < old_owner.size(); ++owner) {
-    const std::int32_t old = old_owner[owner];
-    // Owners keep their order, so a new one begins where the one before it ends.
+  for (std::size_t occupied = 0; occupied < old_occupied.size(); ++occupied) {
+    const std::int32_t old = old_occupied[occupied];
+    // Occupied blocks keep their order, so a new one begins where the one before it ends.
     const std::uint32_t kept_end =
         old < 0 ? moves.kept_begin.back() : staying(edit.removed, set.begin[static_cast<std::size_t>(old) + 1]);
-    const std::uint32_t all = kept_end - moves.kept_begin.back() + arrivals[owner];
+    const std::uint32_t all = kept_end - moves.kept_begin.back() + arrivals[occupied];
     moves.kept_begin.push_back(kept_end);
     moves.begin.push_back(moves.begin.back() + all);
   }
-  std::iota(moves.by_owner.begin(), moves.by_owner.end(), 0u);
-  std::stable_sort(moves.by_owner.begin(), moves.by_owner.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return owner_of[a] < owner_of[b]; });
+  std::iota(moves.by_occupied.begin(), moves.by_occupied.end(), 0u);
+  std::stable_sort(moves.by_occupied.begin(), moves.by_occupied.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return occupied_of[a] < occupied_of[b]; });
   return moves;
 }
 
-/// Makes the blocks that newcomers come to owners, and tells of each owner which it was before, or -1.
+/// Makes the blocks that newcomers come to occupied blocks, and tells of each occupied block which it was
+/// before, or -1.
 template <class Real>
-bool extend_grid(const ParticleEdit<Real>& edit, State<Real>& state, std::vector<std::int32_t>& old_owner) {
+bool extend_grid(const ParticleEdit<Real>& edit, State<Real>& state, std::vector<std::int32_t>& old_occupied) {
   std::vector<Index3> blocks, more;
-  for (const std::int32_t owner : state.grid.owners()) {
-    blocks.push_back(state.grid.blocks()[static_cast<std::size_t>(owner)]);
+  for (const std::int32_t occupied : state.grid.occupied_blocks()) {
+    blocks.push_back(state.grid.blocks()[static_cast<std::size_t>(occupied)]);
   }
   for (const SetEdit<Real>& set : edit.sets) {
     for (const Index3& block : set.cells) {
-      if (state.grid.find_owner(block) < 0) more.push_back(block);
+      if (state.grid.find_occupied(block) < 0) more.push_back(block);
     }
   }
   if (more.empty()) {
-    old_owner.resize(blocks.size());
-    std::iota(old_owner.begin(), old_owner.end(), 0);
+    old_occupied.resize(blocks.size());
+    std::iota(old_occupied.begin(), old_occupied.end(), 0);
     return false;
   }
   const std::size_t before = blocks.size();
   blocks.insert(blocks.end(), more.begin(), more.end());
   state.grid.build(blocks, state.topology);
-  old_owner.assign(state.grid.owners().size(), -1);
+  old_occupied.assign(state.grid.occupied_blocks().size(), -1);
   std::int32_t last = -1;
   for (std::size_t old = 0; old < before; ++old) {
-    const std::int32_t owner = state.grid.find_owner(blocks[old]);
-    REPOSE_ASSERT(owner > last);  // leaf order is an order of coordinates: others coming between change nothing
-    old_owner[static_cast<std::size_t>(owner)] = static_cast<std::int32_t>(old);
-    last = owner;
+    const std::int32_t occupied = state.grid.find_occupied(blocks[old]);
+    REPOSE_ASSERT(occupied >
+                  last);  // leaf order is an order of coordinates: others coming between change nothing
+    old_occupied[static_cast<std::size_t>(occupied)] = static_cast<std::int32_t>(old);
+    last = occupied;
   }
   return true;
 }
@@ -191,10 +194,10 @@ Result<bool> apply_edit(ParticleEdit<Real> edit, State<Real>& state, const Owner
     find_blocks(set.newcomers, state.topology, ownership, set.cells);
     note_motion(set.newcomers, state.counters);
   }
-  std::vector<std::int32_t> old_owner;
-  const bool new_grid = extend_grid(edit, state, old_owner);
+  std::vector<std::int32_t> old_occupied;
+  const bool new_grid = extend_grid(edit, state, old_occupied);
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    edit_set(state.sets[k], edit.sets[k], plan_moves(state.sets[k], edit.sets[k], state.grid, old_owner),
+    edit_set(state.sets[k], edit.sets[k], plan_moves(state.sets[k], edit.sets[k], state.grid, old_occupied),
              edit.threads);
   }
   state.counters.order_due = 1;

@@ -1,5 +1,6 @@
 // Repose: the particles of one body: one material, one mass and one volume for all, as a structure of arrays in
-// the order of blocks. A set has the channels that every particle needs and those that effects asked for.
+// the order of blocks. A set has the channels that every particle needs and those that its law and effects
+// asked for.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace repose {
 
-/// One number per particle that an effect asked for, such as the volume gained.
+/// One number per particle that an effect, or the law of the material, asked for, such as the volume gained.
 template <class Real>
 struct ExtraChannel {
   std::string name;
@@ -33,9 +34,10 @@ struct ParticleSet {
   AlignedArray<Real> affine[kAffineComponents];
   AlignedArray<Real> strain[kStrainComponents];
   AlignedArray<std::uint32_t> id;
-  std::vector<ExtraChannel<Real>> extra;
+  std::vector<ExtraChannel<Real>> extra;  ///< those of the material's law, then those of effects
+  std::size_t law_channels = 0;           ///< how many are the law's
 
-  /// Particles of owner b of the block grid: [begin[b], begin[b + 1]).
+  /// Particles of occupied block b of the block grid: [begin[b], begin[b + 1]).
   std::vector<std::uint32_t> begin;
 
   /// Calls visit(AlignedArray<Real>&, name) for every real channel, in an order that never changes.

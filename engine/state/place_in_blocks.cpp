@@ -8,13 +8,13 @@ namespace repose {
 
 namespace {
 
-/// Moves particles to the ranges of their owners. `blocks` is gone before the channels need room.
+/// Moves particles to the ranges of their occupied blocks. `blocks` is gone before the channels need room.
 template <class Real>
-void sort_by_owner(ParticleSet<Real>& set, const BlockGrid& grid, std::vector<Index3> blocks) {
+void sort_by_occupied(ParticleSet<Real>& set, const BlockGrid& grid, std::vector<Index3> blocks) {
   std::vector<std::uint32_t> place(set.count);
-  set.begin.assign(grid.owners().size() + 1, 0);
+  set.begin.assign(grid.occupied_blocks().size() + 1, 0);
   for (std::size_t p = 0; p < set.count; ++p) {
-    place[p] = static_cast<std::uint32_t>(grid.find_owner(blocks[p]));
+    place[p] = static_cast<std::uint32_t>(grid.find_occupied(blocks[p]));
     ++set.begin[place[p] + 1];
   }
   std::vector<Index3>().swap(blocks);
@@ -35,18 +35,18 @@ void sort_by_owner(ParticleSet<Real>& set, const BlockGrid& grid, std::vector<In
 
 template <class Real>
 void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells, const Ownership& ownership) {
-  std::vector<Index3> owners;
+  std::vector<Index3> occupied_blocks;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     find_blocks(state.sets[k], state.topology, ownership, cells[k]);
     for (const Index3& block : cells[k]) {
-      if (owners.empty() || owners.back() != block) owners.push_back(block);
+      if (occupied_blocks.empty() || occupied_blocks.back() != block) occupied_blocks.push_back(block);
     }
   }
-  std::sort(owners.begin(), owners.end());
-  owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
-  state.grid.build(owners, state.topology);
+  std::sort(occupied_blocks.begin(), occupied_blocks.end());
+  occupied_blocks.erase(std::unique(occupied_blocks.begin(), occupied_blocks.end()), occupied_blocks.end());
+  state.grid.build(occupied_blocks, state.topology);
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    sort_by_owner(state.sets[k], state.grid, std::move(cells[k]));
+    sort_by_occupied(state.sets[k], state.grid, std::move(cells[k]));
   }
   state.counters.order_due = 1;
 }

@@ -1,5 +1,5 @@
-// Repose: which blocks sleep, and for how long the others have been calm; per owner. Empty where the scene does
-// not ask for it.
+// Repose: which blocks sleep, and for how long the others have been calm; per occupied block. Empty where the
+// scene does not ask for it.
 #pragma once
 
 #include <array>
@@ -14,23 +14,23 @@ struct RestField {
   std::vector<double> calm;                ///< s, for which all particles of one that is awake have been slow
   std::vector<std::array<double, 3>> way;  ///< m: net way of its particles in that time; asleep, of its nodes
 
-  void resize(std::size_t owners) {
-    asleep.assign(owners, 0);
-    calm.assign(owners, 0.0);
-    way.assign(owners, {});
+  void resize(std::size_t occupied) {
+    asleep.assign(occupied, 0);
+    calm.assign(occupied, 0.0);
+    way.assign(occupied, {});
   }
-  void begin_anew(std::size_t owner) {
-    calm[owner] = 0.0;
-    way[owner] = {};
+  void begin_anew(std::size_t occupied) {
+    calm[occupied] = 0.0;
+    way[occupied] = {};
   }
-  void wake(std::size_t owner) {
-    asleep[owner] = 0;
-    begin_anew(owner);
+  void wake(std::size_t occupied) {
+    asleep[occupied] = 0;
+    begin_anew(occupied);
   }
-  void take(std::size_t owner, const RestField& from, std::size_t other) {
-    asleep[owner] = from.asleep[other];
-    calm[owner] = from.calm[other];
-    way[owner] = from.way[other];
+  void take(std::size_t occupied, const RestField& from, std::size_t other) {
+    asleep[occupied] = from.asleep[other];
+    calm[occupied] = from.calm[other];
+    way[occupied] = from.way[other];
   }
 };
 

@@ -9,28 +9,12 @@
 
 #include "engine/base/vector.h"
 #include "engine/state/block_grid.h"
+#include "engine/state/counters.h"
 #include "engine/state/node_field.h"
 #include "engine/state/particle_set.h"
 #include "engine/state/rest_field.h"
 
 namespace repose {
-
-/// Scalars that the next step reads; saved with the state.
-struct Counters {
-  std::int64_t frame = 0;  ///< frames completed
-  std::int64_t step = 0;   ///< steps completed
-  double time_in_frame =
-      0.0;                 ///< s since the last frame; time itself is frame / fps + this, so frames are exact
-  double time = 0.0;       ///< s
-  double last_dt = 0.0;    ///< s
-  double max_speed = 0.0;  ///< m/s, largest particle speed after the last step
-  double max_gradient = 0.0;            ///< 1/s, largest |grad v| of the last step
-  std::int32_t order_due = 1;           ///< a particle has drifted as far as its block allows
-  std::int64_t runs_when_ordered = -1;  ///< runs in the first step after the last order; -1: not yet counted
-  std::int64_t runs_wasted = 0;         ///< sum over the steps since of the runs beyond that
-  std::int64_t orders = 0;
-  double unseen_motion = 0.0;  ///< m, way of the fastest particle since sinks last looked; 0 without sinks
-};
 
 /// What has begun and what has ended, in particles; saved with the state. Ids are never used twice, so they do
 /// not stay without gaps.
@@ -61,7 +45,7 @@ struct State {
   NodeField<Real> before_forces;            ///< mass and v^n, where a transfer or an implicit step asks for it
   SparseNodeField<Real> after_friction;     ///< mass and v-tilde, in blocks where there is friction
   LastMotion<Real> last_motion;             ///< where steps are implicit; saved
-  std::vector<std::uint64_t> rows_touched;  ///< per owner: arena rows that its particles reach
+  std::vector<std::uint64_t> rows_touched;  ///< per occupied block: arena rows that its particles reach
 
   std::size_t particles() const {
     std::size_t sum = 0;
@@ -97,11 +81,11 @@ struct State {
 /// Calls visit(set, p, x) for all particles, x its position in metres, in the scene's frame.
 template <class Real, class Visit>
 void for_each_particle(const State<Real>& state, Visit visit) {
-  const auto owners = state.grid.owners();
+  const auto occupied_blocks = state.grid.occupied_blocks();
   for (const ParticleSet<Real>& set : state.sets) {
-    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state.grid.coordinates_of_owner(owner);
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p)
+    for (std::size_t occupied = 0; occupied < occupied_blocks.size(); ++occupied) {
+      const Index3 block = state.grid.occupied_coordinates(occupied);
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p)
         visit(set, p, state.world(block, set, p));
     }
   }

@@ -28,11 +28,11 @@ template <class Real>
 std::uint64_t state_hash(const State<Real>& state) {
   // A sum over particles of a hash of each: ids are part of it, so the order of storage is not.
   std::uint64_t sum = mix(static_cast<std::uint64_t>(state.counters.step));
-  const auto owners = state.grid.owners();
+  const auto occupied_blocks = state.grid.occupied_blocks();
   for (const auto& set : state.sets) {
-    for (std::size_t owner = 0; owner < owners.size(); ++owner) {
-      const Index3 block = state.grid.coordinates_of_owner(owner);
-      for (std::size_t p = set.begin[owner]; p < set.begin[owner + 1]; ++p) {
+    for (std::size_t occupied = 0; occupied < occupied_blocks.size(); ++occupied) {
+      const Index3 block = state.grid.occupied_coordinates(occupied);
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
         std::uint64_t hash = set.id[p];
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const std::int64_t cell = std::int64_t{block[axis]} * kBlockSide - state.origin_cells[axis];

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/vector.h"
 #include "engine/plan/transfer_passes.h"
 
 namespace repose {
 
-std::string refusal_text(const Offender& offender) {
-  return "particle " + std::to_string(offender.id) + " of '" + offender.set + "' " + offender.reason;
+std::string refusal_text(const FailedParticle& particle) {
+  return "particle " + std::to_string(particle.id) + " of '" + particle.set + "' " + particle.reason;
 }
 
 std::string unsolved_text(const ImplicitReport& report) {
@@ -38,13 +39,13 @@ Acceptance<Real>::Acceptance(StepPlan<Real>& plan)
 
 template <class Real>
 void Acceptance<Real>::bound(const BlockSweep<Real>& sweep, std::size_t block) {
-  sweep.kernels().bound(moving_.of_block(sweep.state(), block), bounds_[block]);
+  sweep.kernels().node.bound(moving_.of_block(sweep.state(), block), bounds_[block]);
 }
 
 /// The particle for whose sake no step is short enough.
 template <class Real>
-Offender fastest_particle(const State<Real>& state) {
-  Offender offender;
+FailedParticle fastest_particle(const State<Real>& state) {
+  FailedParticle failed;
   double most = -1.0;
   for (const auto& set : state.sets) {
     for (std::size_t p = 0; p < set.count; ++p) {
@@ -54,21 +55,21 @@ Offender fastest_particle(const State<Real>& state) {
         size += !set.keeps_affine ? 0.0 : double(c[p]) * double(c[p]) * state.spacing * state.spacing;
       if (size <= most) continue;
       most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
-      offender.set = set.name;
-      offender.id = set.id[p];
-      offender.velocity = offender.trial_velocity = v;
+      failed.set = set.name;
+      failed.id = set.id[p];
+      failed.velocity = failed.trial_velocity = to_triple(v);
     }
   }
-  offender.determinant = 1.0;
-  offender.reason = "is too fast for any step";
-  return offender;
+  failed.determinant = 1.0;
+  failed.reason = "is too fast for any step";
+  return failed;
 }
 
 template <class Real>
-bool Acceptance<Real>::bounded(const State<Real>& state, std::size_t owner, Real dt) const {
+bool Acceptance<Real>::bounded(const State<Real>& state, std::size_t occupied, Real dt) const {
   Real low[3] = {}, high[3] = {};
   bool first = true;
-  for (const std::int32_t n : state.grid.neighbours(owner)) {
+  for (const std::int32_t n : state.grid.neighbours(occupied)) {
     if (n < 0) continue;
     const VelocityBounds<Real>& bounds = bounds_[static_cast<std::size_t>(n)];
     if (!bounds.finite) return false;
@@ -95,23 +96,23 @@ bool Acceptance<Real>::bounded(const State<Real>& state, std::size_t owner, Real
 }
 
 template <class Real>
-std::optional<Offender> Acceptance<Real>::inspect(BlockSweep<Real>& sweep) {
+std::optional<FailedParticle> Acceptance<Real>::check(BlockSweep<Real>& sweep) {
   suspects_.clear();
-  for (const std::int32_t owner : sweep.active().moving) {
-    if (!bounded(sweep.state(), static_cast<std::size_t>(owner), sweep.dt())) suspects_.push_back(owner);
+  for (const std::int32_t occupied : sweep.active().moving) {
+    if (!bounded(sweep.state(), static_cast<std::size_t>(occupied), sweep.dt())) suspects_.push_back(occupied);
   }
   found_.resize(suspects_.size());
   sweep.over(suspects_,
-             [&](OccupiedBlock<Real>& block) { found_[block.position] = inspect_block(sweep, block); });
-  for (const auto& offender : found_) {
-    if (offender) return offender;
+             [&](OccupiedBlock<Real>& block) { found_[block.position] = check_block(sweep, block); });
+  for (const auto& failed : found_) {
+    if (failed) return failed;
   }
   return std::nullopt;
 }
 
 template <class Real>
-std::optional<Offender> Acceptance<Real>::inspect_block(const BlockSweep<Real>& sweep,
-                                                        OccupiedBlock<Real>& block) const {
+std::optional<FailedParticle> Acceptance<Real>::check_block(const BlockSweep<Real>& sweep,
+                                                            OccupiedBlock<Real>& block) const {
   moving_.load(block);
   const Kernels<Real>& kernels = sweep.kernels();
   const auto gather = kernels.transfer[transfer_.stencil][transfer_.transfer].gather;
@@ -119,46 +120,47 @@ std::optional<Offender> Acceptance<Real>::inspect_block(const BlockSweep<Real>& 
   in.lattice = make_lattice(block.state, transfer_);
   for (std::size_t axis = 0; axis < 3; ++axis) in.moving[axis] = block.scratch.at(velocity_) + axis * kChunk;
   for (std::size_t k = 0; k < kAffineComponents; ++k) in.gradient[k] = block.scratch.at(gradient_) + k * kChunk;
-  std::optional<Offender> offender;
+  std::optional<FailedParticle> failed;
   block.for_each_chunk([&](std::size_t, Chunk<Real>& chunk) {
-    if (offender) return;
+    if (failed) return;
     in.particles = chunk.particles;
     gather(in, block.scratch.at(moving_.place()));
-    const std::size_t p =
-        kernels.inspect(in.moving, in.gradient, chunk.particles.count, block.dt, in.lattice.spacing);
-    if (p < chunk.particles.count) offender = accuse(block, chunk, p, in);
+    const std::size_t p = kernels.particle.first_failed(in.moving, in.gradient, chunk.particles.count, block.dt,
+                                                        in.lattice.spacing);
+    if (p < chunk.particles.count) failed = failure(block, chunk, p, in);
   });
-  return offender;
+  return failed;
 }
 
 template <class Real>
-Offender Acceptance<Real>::accuse(const OccupiedBlock<Real>& block, const Chunk<Real>& chunk, std::size_t p,
-                                  const GatherInput<Real>& trial) const {
+FailedParticle Acceptance<Real>::failure(const OccupiedBlock<Real>& block, const Chunk<Real>& chunk,
+                                         std::size_t p, const GatherInput<Real>& trial) const {
   const State<Real>& state = block.state;
-  Offender offender;
-  offender.set = chunk.set.name;
-  offender.id = chunk.set.id[chunk.first + p];
-  offender.block = state.grid.coordinates_of_owner(block.owner);
+  FailedParticle failed;
+  failed.set = chunk.set.name;
+  failed.id = chunk.set.id[chunk.first + p];
+  failed.block = state.grid.occupied_coordinates(block.occupied);
   std::array<double, 3> offset{};
   Mat3 map = Mat3::Identity();
   for (int axis = 0; axis < 3; ++axis) {
-    offset[static_cast<std::size_t>(axis)] = chunk.particles.position[axis][p];
-    offender.velocity[axis] = chunk.particles.velocity[axis][p];
-    offender.trial_velocity[axis] = trial.moving[axis][p];
+    const auto along = static_cast<std::size_t>(axis);
+    offset[along] = chunk.particles.position[axis][p];
+    failed.velocity[along] = chunk.particles.velocity[axis][p];
+    failed.trial_velocity[along] = trial.moving[axis][p];
     for (int c = 0; c < 3; ++c) map(axis, c) += static_cast<double>(chunk.dt) * trial.gradient[3 * axis + c][p];
   }
-  offender.position = state.world(offender.block, offset);
-  offender.determinant = map.determinant();
-  const bool finite = offender.trial_velocity.allFinite() && std::isfinite(offender.determinant);
-  offender.reason = !finite                       ? "is not finite"
-                    : offender.determinant <= 0.0 ? "would be turned inside out"
-                                                  : "would move over a cell";
-  return offender;
+  failed.position = to_triple(state.world(failed.block, offset));
+  failed.determinant = map.determinant();
+  const bool finite = to_vec3(failed.trial_velocity).allFinite() && std::isfinite(failed.determinant);
+  failed.reason = !finite                     ? "is not finite"
+                  : failed.determinant <= 0.0 ? "would be turned inside out"
+                                              : "would move over a cell";
+  return failed;
 }
 
 template class Acceptance<float>;
 template class Acceptance<double>;
-template Offender fastest_particle(const State<float>&);
-template Offender fastest_particle(const State<double>&);
+template FailedParticle fastest_particle(const State<float>&);
+template FailedParticle fastest_particle(const State<double>&);
 
 }  // namespace repose

@@ -23,29 +23,29 @@ class Acceptance {
   void bound(const BlockSweep<Real>& sweep, std::size_t block);
   /// Once all blocks that take part have their bounds: the first particle, in the order of blocks, that the
   /// step of the sweep would harm.
-  std::optional<Offender> inspect(BlockSweep<Real>& sweep);
+  std::optional<FailedParticle> check(BlockSweep<Real>& sweep);
 
   std::size_t bytes() const {
     return bounds_.capacity() * sizeof(VelocityBounds<Real>) + suspects_.capacity() * sizeof(std::int32_t) +
-           found_.capacity() * sizeof(std::optional<Offender>);
+           found_.capacity() * sizeof(std::optional<FailedParticle>);
   }
 
  private:
-  bool bounded(const State<Real>& state, std::size_t owner, Real dt) const;
-  std::optional<Offender> inspect_block(const BlockSweep<Real>& sweep, OccupiedBlock<Real>& block) const;
-  Offender accuse(const OccupiedBlock<Real>& block, const Chunk<Real>& chunk, std::size_t p,
-                  const GatherInput<Real>& trial) const;
+  bool bounded(const State<Real>& state, std::size_t occupied, Real dt) const;
+  std::optional<FailedParticle> check_block(const BlockSweep<Real>& sweep, OccupiedBlock<Real>& block) const;
+  FailedParticle failure(const OccupiedBlock<Real>& block, const Chunk<Real>& chunk, std::size_t p,
+                         const GatherInput<Real>& trial) const;
 
   TransferChoice transfer_;
   MovingNodes<Real> moving_;
-  std::size_t velocity_, gradient_;             // in scratch
-  std::vector<VelocityBounds<Real>> bounds_;    // per block
-  std::vector<std::int32_t> suspects_;          // owners that must gather on trial
-  std::vector<std::optional<Offender>> found_;  // per suspect
+  std::size_t velocity_, gradient_;                   // in scratch
+  std::vector<VelocityBounds<Real>> bounds_;          // per block
+  std::vector<std::int32_t> suspects_;                // occupied blocks that must gather on trial
+  std::vector<std::optional<FailedParticle>> found_;  // per suspect
 };
 
 /// The particle for whose sake no step is short enough.
 template <class Real>
-Offender fastest_particle(const State<Real>& state);
+FailedParticle fastest_particle(const State<Real>& state);
 
 }  // namespace repose

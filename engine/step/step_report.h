@@ -1,26 +1,28 @@
 // Repose: what came of a step.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "engine/base/result.h"
-#include "engine/base/vector.h"
-#include "engine/implicit/implicit_step.h"
-#include "engine/plan/time_step.h"
+#include "engine/base/triple.h"
+#include "engine/implicit/implicit_report.h"
+#include "engine/plan/report.h"
 
 namespace repose {
 
 /// The particle for whose sake a step was refused.
-struct Offender {
+struct FailedParticle {
   std::string set;
   std::uint32_t id = 0;
-  Index3 block{0, 0, 0};
-  Vec3 position{0, 0, 0};        ///< m
-  Vec3 velocity{0, 0, 0};        ///< m/s, before the step
-  Vec3 trial_velocity{0, 0, 0};  ///< m/s, that the step would have moved it with
-  double determinant = 0.0;      ///< det(I + dt grad v)
-  std::string reason;            ///< what would happen to it, such as "would move over a cell"
+  std::array<std::int32_t, 3> block{};
+  Triple position{};         ///< m
+  Triple velocity{};         ///< m/s, before the step
+  Triple trial_velocity{};   ///< m/s, that the step would have moved it with
+  double determinant = 0.0;  ///< det(I + dt grad v)
+  std::string reason;        ///< what would happen to it, such as "would move over a cell"
 };
 
 struct StepReport {
@@ -29,7 +31,7 @@ struct StepReport {
   Limit limit = Limit::kMaxStep;
   int redone = 0;                          ///< how often it was refused
   std::string first_refusal;               ///< why, the first time; empty where it was not
-  std::optional<Offender> offender;        ///< of the last refusal
+  std::optional<FailedParticle> failed;    ///< of the last refusal
   std::optional<Error> error;              ///< why no step was tried: an event failed, or memory would not do
   std::optional<ImplicitReport> implicit;  ///< of the last try, where steps are implicit
 
@@ -41,7 +43,7 @@ struct StepReport {
 
 /// Why a step was refused: "particle 7 of 'pile' would move over a cell"; "it needs more than
 /// implicit.newton_iterations".
-std::string refusal_text(const Offender& offender);
+std::string refusal_text(const FailedParticle& particle);
 std::string unsolved_text(const ImplicitReport& report);
 
 }  // namespace repose

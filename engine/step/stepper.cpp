@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/memory.h"
+#include "engine/plan/time_step.h"
 
 namespace repose {
 namespace {
@@ -53,7 +54,7 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   report.limit = size.limit;
   report.dt = size.dt;
   if (!(size.dt >= kLeastShare * plan_.limits.max_step)) {  // also when a speed is not finite
-    report.offender = fastest_particle(state);
+    report.failed = fastest_particle(state);
     return report;
   }
   active_.begin_step(state, state.counters.time + size.dt);
@@ -75,14 +76,14 @@ bool Stepper<Real>::try_step(StepReport& report) {
   scatter();
   for (const auto& pass : plan_.prepare) pass.run(sweep_.state(), sweep_.dt());
   update_nodes();
-  report.offender.reset();
+  report.failed.reset();
   if (implicit_ && !solve(report)) return false;
   active_.wake_margin(sweep_);
-  const PhaseTimer timer(profile_, Phase::kInspect);
-  report.offender = acceptance_.inspect(sweep_);
-  if (report.offender) report.refuse(refusal_text(*report.offender));
-  if (!report.offender && implicit_) implicit_->accept();
-  return !report.offender;
+  const PhaseTimer timer(profile_, Phase::kAcceptance);
+  report.failed = acceptance_.check(sweep_);
+  if (report.failed) report.refuse(refusal_text(*report.failed));
+  if (!report.failed && implicit_) implicit_->accept();
+  return !report.failed;
 }
 
 template <class Real>
@@ -96,8 +97,8 @@ void Stepper<Real>::scatter() {
         if (keeps_velocity) std::memset(state.before_forces.block(block), 0, kBlockValues * sizeof(Real));
       },
       64);
-  runs_.assign(state.grid.owners().size(), 0);
-  sweep_.over_telling([this](OccupiedBlock<Real>& block) { scatter_block(block); });
+  runs_.assign(state.grid.occupied_blocks().size(), 0);
+  sweep_.over_scattering([this](OccupiedBlock<Real>& block) { scatter_block(block); });
 }
 
 namespace {
@@ -130,7 +131,7 @@ void Stepper<Real>::scatter_block(OccupiedBlock<Real>& block) {
     runs += chunk.touched.runs;
   });
   *block.rows = rows;
-  runs_[block.owner] = runs;
+  runs_[block.occupied] = runs;
   State<Real>& state = block.state;
   block.add(arena_, [&state](std::size_t b) { return state.nodes.block(b); });
   if (keeps_velocity)
@@ -146,7 +147,7 @@ void Stepper<Real>::update_nodes() {
   sweep_.for_each_block([&](std::size_t b) {
     const NodeBlock<Real> block{state, b, state.nodes.block(b), sweep_.dt()};
     for (const auto& pass : plan_.nodes) pass.run(block);
-    for (const auto& pass : plan_.holds) pass.run(block);
+    for (const auto& pass : plan_.applied) pass.run(block);
     if (!implicit_) acceptance_.bound(sweep_, b);
   });
 }
@@ -167,8 +168,8 @@ bool Stepper<Real>::solve(StepReport& report) {
 template <class Real>
 void Stepper<Real>::gather() {
   const PhaseTimer timer(profile_, Phase::kGather);
-  motion_.assign(sweep_.state().grid.owners().size(), {});
-  sweep_.over_moving([this](OccupiedBlock<Real>& block) { motion_[block.owner] = gather_block(block); });
+  motion_.assign(sweep_.state().grid.occupied_blocks().size(), {});
+  sweep_.over_moving([this](OccupiedBlock<Real>& block) { motion_[block.occupied] = gather_block(block); });
 }
 
 template <class Real>
@@ -273,9 +274,9 @@ Result<void> Stepper<Real>::follow(State<Real>& state) {
 
 template <class Real>
 void Stepper<Real>::reserve(State<Real>& state) {
-  const std::size_t owners = state.grid.owners().size();
-  motion_.reserve(owners);
-  runs_.reserve(owners);
+  const std::size_t occupied = state.grid.occupied_blocks().size();
+  motion_.reserve(occupied);
+  runs_.reserve(occupied);
   acceptance_.begin(state.grid.size());
   active_.refresh(state);
   sweep_.begin(state, Real(0));

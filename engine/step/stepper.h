@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "engine/implicit/implicit_step.h"
 #include "engine/step/acceptance.h"
 #include "engine/step/between_steps.h"
 #include "engine/step/memory_use.h"
@@ -70,8 +71,8 @@ class Stepper {
   BlockSweep<Real> sweep_;  // after all that ask the plan for scratch
   std::optional<ImplicitStep<Real>> implicit_;
   std::size_t arena_, before_forces_;  // in scratch
-  std::vector<Motion<Real>> motion_;   // per owner
-  std::vector<std::size_t> runs_;      // per owner
+  std::vector<Motion<Real>> motion_;   // per occupied block
+  std::vector<std::size_t> runs_;      // per occupied block
   Count begun_with_, room_;            // of the first state; that there is room for
   bool unmeasured_ = false;            // particles have begun, and nobody has asked whether there is memory
 };

@@ -15,9 +15,9 @@ constexpr std::uint8_t kFar = 3;
 constexpr double kPatience = 5.0;
 
 template <class Real>
-std::uint32_t particles_of(const State<Real>& state, std::size_t owner) {
+std::uint32_t particles_of(const State<Real>& state, std::size_t occupied) {
   std::uint32_t sum = 0;
-  for (const auto& set : state.sets) sum += set.begin[owner + 1] - set.begin[owner];
+  for (const auto& set : state.sets) sum += set.begin[occupied + 1] - set.begin[occupied];
   return sum;
 }
 
@@ -51,51 +51,51 @@ ActiveBlocks<Real>::ActiveBlocks(StepPlan<Real>& plan)
 template <class Real>
 void ActiveBlocks<Real>::before_order(const State<Real>& state) {
   if (!rule_) return;
-  const std::size_t owners = state.grid.owners().size();
-  old_blocks_.resize(owners);
-  old_counts_.resize(owners);
-  for (std::size_t owner = 0; owner < owners; ++owner) {
-    old_blocks_[owner] = state.grid.coordinates_of_owner(owner);
-    old_counts_[owner] = particles_of(state, owner);
+  const std::size_t all = state.grid.occupied_blocks().size();
+  old_blocks_.resize(all);
+  old_counts_.resize(all);
+  for (std::size_t occupied = 0; occupied < all; ++occupied) {
+    old_blocks_[occupied] = state.grid.occupied_coordinates(occupied);
+    old_counts_[occupied] = particles_of(state, occupied);
   }
   old_ = state.rest;
 }
 
-/// `wakes(block, old owners)`: whether an owner at the block wakes that sleeps and has another number of
-/// particles.
+/// `wakes(block, old occupied blocks)`: whether an occupied block at the block wakes that sleeps and has
+/// another number of particles.
 template <class Real>
 template <class Wakes>
 void ActiveBlocks<Real>::carry_over(State<Real>& state, Wakes wakes) {
   listed_ = false;
   if (!rule_) return;
   RestField& rest = state.rest;
-  rest.resize(state.grid.owners().size());
+  rest.resize(state.grid.occupied_blocks().size());
   if (old_.asleep.size() != old_blocks_.size()) return;  // before the first step: all are awake
-  OldOwners old;
+  OldOccupiedBlocks old;
   for (std::size_t k = 0; k < old_blocks_.size(); ++k) old.emplace(old_blocks_[k], k);
   std::vector<std::uint8_t> stays(old_blocks_.size(), 0);
-  for (std::size_t owner = 0; owner < rest.asleep.size(); ++owner) {
-    const Index3 block = state.grid.coordinates_of_owner(owner);
+  for (std::size_t occupied = 0; occupied < rest.asleep.size(); ++occupied) {
+    const Index3 block = state.grid.occupied_coordinates(occupied);
     const auto found = old.find(block);
     if (found == old.end()) continue;
     stays[found->second] = 1;
-    rest.take(owner, old_, found->second);
-    if (rest.asleep[owner] == 0 || old_counts_[found->second] == particles_of(state, owner)) continue;
-    if (wakes(block, old)) rest.wake(owner);
+    rest.take(occupied, old_, found->second);
+    if (rest.asleep[occupied] == 0 || old_counts_[found->second] == particles_of(state, occupied)) continue;
+    if (wakes(block, old)) rest.wake(occupied);
   }
   for (const auto& [block, k] : old) {
     if (stays[k] != 0) continue;
     for_each_around(block, [&](const Index3& next) {
-      const std::int32_t owner = state.grid.find_owner(state.topology.wrap(next));
-      if (owner >= 0 && rest.asleep[static_cast<std::size_t>(owner)] != 0)
-        rest.wake(static_cast<std::size_t>(owner));
+      const std::int32_t occupied = state.grid.find_occupied(state.topology.wrap(next));
+      if (occupied >= 0 && rest.asleep[static_cast<std::size_t>(occupied)] != 0)
+        rest.wake(static_cast<std::size_t>(occupied));
     });
   }
 }
 
 template <class Real>
 void ActiveBlocks<Real>::after_order(State<Real>& state) {
-  carry_over(state, [&](const Index3& block, const OldOwners& old) {
+  carry_over(state, [&](const Index3& block, const OldOccupiedBlocks& old) {
     bool beside_awake = false;
     for_each_around(block, [&](const Index3& next) {
       const auto found = old.find(state.topology.wrap(next));
@@ -107,39 +107,40 @@ void ActiveBlocks<Real>::after_order(State<Real>& state) {
 
 template <class Real>
 void ActiveBlocks<Real>::after_edit(State<Real>& state) {
-  carry_over(state, [](const Index3&, const OldOwners&) { return true; });
+  carry_over(state, [](const Index3&, const OldOccupiedBlocks&) { return true; });
 }
 
 template <class Real>
 void ActiveBlocks<Real>::begin_step(State<Real>& state, double to) {
   RestField& rest = state.rest;
   const double from = state.counters.time;
-  for (std::size_t owner = 0; owner < rest.asleep.size() && !disturbances_.empty(); ++owner) {
-    if (rest.asleep[owner] == 0) continue;
-    const Index3 block = state.grid.coordinates_of_owner(owner);
+  for (std::size_t occupied = 0; occupied < rest.asleep.size() && !disturbances_.empty(); ++occupied) {
+    if (rest.asleep[occupied] == 0) continue;
+    const Index3 block = state.grid.occupied_coordinates(occupied);
     const bool reached = std::any_of(
         disturbances_.begin(), disturbances_.end(),
         [&](const Disturbance<Real>& disturbance) { return disturbance.reaches(state, block, from, to); });
     if (!reached) continue;
-    rest.wake(owner);
+    rest.wake(occupied);
     listed_ = false;
   }
   refresh(state);
 }
 
-/// How far owners are from one that is awake.
+/// How far occupied blocks are from one that is awake.
 template <class Real>
 void ActiveBlocks<Real>::measure_distances(const State<Real>& state) {
-  const std::size_t owners = state.grid.owners().size();
-  distance_.assign(owners, kFar);
-  for (std::size_t owner = 0; owner < owners; ++owner) {
-    if (state.rest.asleep[owner] == 0) distance_[owner] = 0;
+  const std::size_t all = state.grid.occupied_blocks().size();
+  distance_.assign(all, kFar);
+  for (std::size_t occupied = 0; occupied < all; ++occupied) {
+    if (state.rest.asleep[occupied] == 0) distance_[occupied] = 0;
   }
   for (std::uint8_t ring = 1; ring < kFar; ++ring) {
-    for (std::size_t owner = 0; owner < owners; ++owner) {
-      if (distance_[owner] != ring - 1) continue;
-      for (const std::int32_t block : state.grid.neighbours(owner)) {
-        const std::int32_t other = block < 0 ? -1 : state.grid.owner_of_block(static_cast<std::size_t>(block));
+    for (std::size_t occupied = 0; occupied < all; ++occupied) {
+      if (distance_[occupied] != ring - 1) continue;
+      for (const std::int32_t block : state.grid.neighbours(occupied)) {
+        const std::int32_t other =
+            block < 0 ? -1 : state.grid.occupied_of_block(static_cast<std::size_t>(block));
         if (other < 0) continue;
         std::uint8_t& distance = distance_[static_cast<std::size_t>(other)];
         distance = std::min(distance, ring);
@@ -153,13 +154,13 @@ void ActiveBlocks<Real>::list(const State<Real>& state) {
   listed_ = true;
   const BlockGrid& grid = state.grid;
   if (!rule_) {
-    set_.moving.resize(grid.owners().size());
+    set_.moving.resize(grid.occupied_blocks().size());
     std::iota(set_.moving.begin(), set_.moving.end(), 0);
     set_.blocks.resize(grid.size());
     std::iota(set_.blocks.begin(), set_.blocks.end(), 0);
     for (std::size_t colour = 0; colour < set_.scatter.size(); ++colour) {
-      const auto owners = grid.colour(static_cast<int>(colour));
-      set_.scatter[colour].assign(owners.begin(), owners.end());
+      const auto occupied_blocks = grid.colour(static_cast<int>(colour));
+      set_.scatter[colour].assign(occupied_blocks.begin(), occupied_blocks.end());
     }
     return;
   }
@@ -168,11 +169,11 @@ void ActiveBlocks<Real>::list(const State<Real>& state) {
   set_.margin.clear();
   set_.blocks.clear();
   reached_.assign(grid.size(), 0);
-  for (std::size_t owner = 0; owner < distance_.size(); ++owner) {
-    if (distance_[owner] == 0) set_.moving.push_back(static_cast<std::int32_t>(owner));
-    if (distance_[owner] == 1) set_.margin.push_back(static_cast<std::int32_t>(owner));
-    if (distance_[owner] == kFar) continue;
-    for (const std::int32_t block : grid.neighbours(owner)) {
+  for (std::size_t occupied = 0; occupied < distance_.size(); ++occupied) {
+    if (distance_[occupied] == 0) set_.moving.push_back(static_cast<std::int32_t>(occupied));
+    if (distance_[occupied] == 1) set_.margin.push_back(static_cast<std::int32_t>(occupied));
+    if (distance_[occupied] == kFar) continue;
+    for (const std::int32_t block : grid.neighbours(occupied)) {
       if (block >= 0) reached_[static_cast<std::size_t>(block)] = 1;
     }
   }
@@ -181,13 +182,13 @@ void ActiveBlocks<Real>::list(const State<Real>& state) {
   }
   for (std::size_t colour = 0; colour < set_.scatter.size(); ++colour) {
     set_.scatter[colour].clear();
-    for (const std::int32_t owner : grid.colour(static_cast<int>(colour))) {
-      if (distance_[static_cast<std::size_t>(owner)] != kFar) set_.scatter[colour].push_back(owner);
+    for (const std::int32_t occupied : grid.colour(static_cast<int>(colour))) {
+      if (distance_[static_cast<std::size_t>(occupied)] != kFar) set_.scatter[colour].push_back(occupied);
     }
   }
 }
 
-/// Of the nodes with mass in the rows that the particles of an owner touch.
+/// Of the nodes with mass in the rows that the particles of an occupied block touch.
 template <class Real>
 typename ActiveBlocks<Real>::Stir ActiveBlocks<Real>::stir_of_nodes(OccupiedBlock<Real>& block) const {
   moving_.load(block);
@@ -221,14 +222,15 @@ void ActiveBlocks<Real>::wake_margin(BlockSweep<Real>& sweep) {
   if (drift_ != nullptr) drift_->sums.assign(rest.asleep.size(), {});
   if (set_.margin.empty()) return;
   stirs_.resize(rest.asleep.size());
-  sweep.over(set_.margin, [this](OccupiedBlock<Real>& block) { stirs_[block.owner] = stir_of_nodes(block); });
+  sweep.over(set_.margin,
+             [this](OccupiedBlock<Real>& block) { stirs_[block.occupied] = stir_of_nodes(block); });
   for (const std::int32_t k : set_.margin) {
-    const auto owner = static_cast<std::size_t>(k);
-    if (rest.asleep[owner] == 0) continue;  // woken by an earlier try of this step
-    const double way = go(rest.way[owner], stirs_[owner].velocity, static_cast<double>(sweep.dt()));
+    const auto occupied = static_cast<std::size_t>(k);
+    if (rest.asleep[occupied] == 0) continue;  // woken by an earlier try of this step
+    const double way = go(rest.way[occupied], stirs_[occupied].velocity, static_cast<double>(sweep.dt()));
     // Not a number wakes too: inspection will say whose it is.
-    if (stirs_[owner].speed <= rule_->wake_speed && way <= kPatience * rule_->way) continue;
-    rest.wake(owner);
+    if (stirs_[occupied].speed <= rule_->wake_speed && way <= kPatience * rule_->way) continue;
+    rest.wake(occupied);
     set_.moving.push_back(k);
     listed_ = false;
   }
@@ -238,24 +240,24 @@ template <class Real>
 void ActiveBlocks<Real>::end_step(State<Real>& state, double dt, std::span<const Motion<Real>> motion) {
   if (!rule_) return;
   for (const std::int32_t k : set_.moving) {
-    const auto owner = static_cast<std::size_t>(k);
-    const Drift::Sum& sum = drift_->sums[owner];
-    Stir stir{std::sqrt(static_cast<double>(motion[owner].speed_squared)), sum.velocity};
+    const auto occupied = static_cast<std::size_t>(k);
+    const Drift::Sum& sum = drift_->sums[occupied];
+    Stir stir{std::sqrt(static_cast<double>(motion[occupied].speed_squared)), sum.velocity};
     for (double& v : stir.velocity) v /= std::max(sum.samples, 1.0);
-    settle(state, owner, dt, stir);
+    settle(state, occupied, dt, stir);
   }
 }
 
 template <class Real>
-void ActiveBlocks<Real>::settle(State<Real>& state, std::size_t owner, double dt, const Stir& stir) {
+void ActiveBlocks<Real>::settle(State<Real>& state, std::size_t occupied, double dt, const Stir& stir) {
   RestField& rest = state.rest;
-  const double way = go(rest.way[owner], stir.velocity, dt);
-  rest.calm[owner] += dt;
-  if (stir.speed >= rule_->speed) rest.begin_anew(owner);
-  if (rest.calm[owner] < rule_->after) return;
-  rest.begin_anew(owner);
+  const double way = go(rest.way[occupied], stir.velocity, dt);
+  rest.calm[occupied] += dt;
+  if (stir.speed >= rule_->speed) rest.begin_anew(occupied);
+  if (rest.calm[occupied] < rule_->after) return;
+  rest.begin_anew(occupied);
   if (way > rule_->way) return;
-  rest.asleep[owner] = 1;
+  rest.asleep[occupied] = 1;
   listed_ = false;
 }
 

@@ -12,6 +12,7 @@
 #include "engine/base/parallel.h"
 #include "engine/plan/step_plan.h"
 #include "engine/sweep/active_set.h"
+#include "kernels/pass/pass.h"
 
 namespace repose {
 
@@ -23,7 +24,7 @@ struct OccupiedBlock {
   Scratch<Real>& scratch;
   Real dt;
   std::size_t position;         ///< in the list that is gone over
-  std::size_t owner, next;      ///< as the grid counts them; the second's turn it is then
+  std::size_t occupied, next;   ///< as the grid counts them; the second's turn it is then
   std::uint64_t* rows;          ///< of the arena, that its particles reach
   bool two_velocities = false;  ///< as in Chunk
 
@@ -42,11 +43,11 @@ struct OccupiedBlock {
   /// Calls visit(set, chunk) for its particles.
   template <class Visit>
   void for_each_chunk(Visit visit) {
-    const Vec3 origin = state.world(state.grid.coordinates_of_owner(owner), {0.0, 0.0, 0.0});
+    const Vec3 origin = state.world(state.grid.occupied_coordinates(occupied), {0.0, 0.0, 0.0});
     for (std::size_t k = 0; k < state.sets.size(); ++k) {
       ParticleSet<Real>& set = state.sets[k];
-      const std::size_t end = set.begin[owner + 1];
-      for (std::size_t first = set.begin[owner]; first < end; first += kChunk) {
+      const std::size_t end = set.begin[occupied + 1];
+      for (std::size_t first = set.begin[occupied]; first < end; first += kChunk) {
         Chunk<Real> chunk{set,
                           first,
                           set.span(first, std::min(kChunk, end - first)),
@@ -55,7 +56,7 @@ struct OccupiedBlock {
                           state.spacing,
                           state.counters.time,
                           origin,
-                          owner,
+                          occupied,
                           two_velocities};
         const std::size_t after = end - first > kChunk ? first + kChunk : set.begin[next];
         chunk.particles.ahead = static_cast<std::ptrdiff_t>(after) - static_cast<std::ptrdiff_t>(first);
@@ -68,7 +69,7 @@ struct OccupiedBlock {
   template <class Value, class Values>
   std::array<Value*, kNeighbours> around(Values block_values) const {
     std::array<Value*, kNeighbours> blocks;
-    const auto neighbours = state.grid.neighbours(owner);
+    const auto neighbours = state.grid.neighbours(occupied);
     for (std::size_t n = 0; n < kNeighbours; ++n) {
       blocks[n] = neighbours[n] < 0 ? nullptr : block_values(static_cast<std::size_t>(neighbours[n]));
     }
@@ -121,31 +122,31 @@ class BlockSweep {
     return sums;
   }
 
-  /// Calls body(OccupiedBlock&) for the owners that tell the nodes, colour by colour.
+  /// Calls body(OccupiedBlock&) for the occupied blocks that tell the nodes, colour by colour.
   template <class Body>
-  void over_telling(Body body) {
-    for (const auto& owners : active_.scatter) over(owners, body);
+  void over_scattering(Body body) {
+    for (const auto& occupied : active_.scatter) over(occupied, body);
   }
   /// The same for those whose particles move, in any order: they must not write to nodes.
   template <class Body>
   void over_moving(Body body) {
     over(active_.moving, body);
   }
-  /// The same for any owners.
+  /// The same for any occupied blocks.
   template <class Body>
-  void over(std::span<const std::int32_t> owners, Body body) {
+  void over(std::span<const std::int32_t> occupied_blocks, Body body) {
     const StencilKernels<Real>& stencil = plan_.kernels->stencil[plan_.transfer.stencil];
-    threads_.for_each(owners.size(), [&](std::size_t i) {
-      const auto owner = static_cast<std::size_t>(owners[i]);
-      const auto next = static_cast<std::size_t>(owners[i + 1 < owners.size() ? i + 1 : i]);
+    threads_.for_each(occupied_blocks.size(), [&](std::size_t i) {
+      const auto occupied = static_cast<std::size_t>(occupied_blocks[i]);
+      const auto next = static_cast<std::size_t>(occupied_blocks[i + 1 < occupied_blocks.size() ? i + 1 : i]);
       OccupiedBlock<Real> block{*state_,
                                 stencil,
                                 scratch_[static_cast<std::size_t>(Threads::index())],
                                 dt_,
                                 i,
-                                owner,
+                                occupied,
                                 next,
-                                &state_->rows_touched[owner]};
+                                &state_->rows_touched[occupied]};
       body(block);
     });
   }

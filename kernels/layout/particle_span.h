@@ -12,6 +12,9 @@ namespace repose {
 inline constexpr int kAffineComponents = 9;
 inline constexpr int kStrainComponents = 6;
 
+/// Particles per call: what a pass hands to the next through scratch stays in the first cache level.
+inline constexpr std::size_t kChunk = 128;
+
 template <class Real>
 struct ParticleSpan {
   Real* position[3];                ///< cells, from the block's origin

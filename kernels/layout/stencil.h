@@ -105,7 +105,7 @@ inline constexpr auto kStencilFigures = figures_of(Stencils{});
 #define REPOSE_KERNELS_LAYOUT_STENCIL_H
 #endif
 
-#include "kernels/base/simd.h"
+#include "kernels/base/simd-inl.h"
 #include "kernels/layout/node_block.h"
 #include "kernels/transfer/transfer.h"
 

@@ -19,77 +19,28 @@
 // The projection reads only t and n, so it acts on the strain tensor itself and needs no eigenvectors.
 #ifndef REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H_PARAMETERS
 #define REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H_PARAMETERS
-#include <numbers>
-
+#include "kernels/material/cone.h"
 #include "kernels/material/hencky.h"
-#include "kernels/material/material.h"
 
 namespace repose {
-
-/// Which experiment the cone shall agree with Mohr-Coulomb in, for a given friction angle. They differ:
-/// alpha of 30 degrees in triaxial compression is a cone that in plane strain yields at 43.9 degrees.
-enum class ConeMatching {
-  kTriaxialCompression,    ///< Klar et al. 2016, eq. 31
-  kPlaneStrain,            ///< isochoric flow (psi = 0)
-  kPlaneStrainAssociated,  ///< Bui et al. 2008
-  kTwoDimensional,         ///< the law in two dimensions, Klar et al. 2016 supplement, eq. 32
-};
-
-inline constexpr Choice kConeMatchings[] = {
-    {"triaxial_compression", "Klar et al. 2016, eq. 31"},
-    {"plane_strain", "in plane strain, as this law flows: at constant volume"},
-    {"plane_strain_associated",
-     "Bui et al. 2008; for flow that dilates, so here it acts a little lower (30 as 28.7)"},
-    {"two_dimensional",
-     "the slope of the 2D law, Klar et al. 2016 supplement, eq. 32; in plane strain far stronger (30 as 48.6)"},
-};
 
 template <class Real>
 struct DruckerPragerConstants;
 
 /// Dry sand.
-struct DruckerPragerParameters {
+struct DruckerPragerParameters : MaterialTraits, FrictionalCone {
   static constexpr const char* kName = "drucker_prager";
   static constexpr const char* kMeaning = "dry sand";
   static constexpr bool kYields = true;
+  static constexpr bool kHasCone = true;
   template <class Real>
   using Constants = DruckerPragerConstants<Real>;
 
   Elasticity elasticity;
-  double friction_angle = 35.0;  ///< phi, degrees
-  ConeMatching matching = ConeMatching::kTriaxialCompression;
 
-  /// Slope alpha of the cone: alpha tr(tau) + |dev tau| <= 0.
-  double cone_slope() const { return cone_slope_at(friction_angle); }
-  /// The same for another angle, degrees.
-  double cone_slope_at(double angle) const {
-    const double sine = std::sin(angle * std::numbers::pi / 180.0);
-    return sine * slope_over_sine(sine);
-  }
-  /// alpha / sin(phi), which has a limit where phi is zero.
-  double slope_over_sine(double sine) const {
-    switch (matching) {
-      case ConeMatching::kTriaxialCompression:
-        return std::sqrt(2.0 / 3.0) * 2.0 / (3.0 - sine);
-      case ConeMatching::kPlaneStrain:
-        return std::sqrt(2.0) / 3.0;
-      case ConeMatching::kPlaneStrainAssociated:
-        return std::sqrt(2.0) / std::sqrt(9.0 + 3.0 * sine * sine);
-      case ConeMatching::kTwoDimensional:
-        return 1.0 / std::sqrt(2.0);
-    }
-    return 0.0;
-  }
-  /// bc = alpha (3 lambda + 2 mu) / (2 mu), of a slope alpha.
-  double cone_of_slope(double slope) const {
-    return slope * (3.0 * elasticity.lambda() + 2.0 * elasticity.mu()) / (2.0 * elasticity.mu());
-  }
-  /// k = c_C / (2 mu) of a cohesion c in Pa, at the material's angle and matching. In all of these matchings
-  /// c_C = 3 alpha c cot(phi): the cone's apex is that of Mohr-Coulomb.
-  double cohesion_strain(double cohesion) const {
-    const double phi = friction_angle * std::numbers::pi / 180.0;
-    return 3.0 * slope_over_sine(std::sin(phi)) * std::cos(phi) * cohesion / (2.0 * elasticity.mu());
-  }
+  const FrictionalCone& cone() const { return *this; }
+  /// bc.
+  double yield_slope() const { return yield_slope_of(elasticity, cone_slope()); }
 
   /// psi, J/m^3 of the volume at rest.
   double energy_density(const double (&strain)[6]) const { return hencky_energy_density(elasticity, strain); }
@@ -97,14 +48,7 @@ struct DruckerPragerParameters {
   template <class Fields>
   void describe(Fields& fields) {
     elasticity.describe(fields);
-    fields.number("friction_angle", friction_angle,
-                  {.unit = "degrees",
-                   .meaning = "angle of internal friction; dry sand has 30 to 38",
-                   .low = 0.0,
-                   .high = 90.0,
-                   .high_open = true});
-    fields.choice("cone_matching", matching, kConeMatchings,
-                  "the experiment in which the cone agrees with Mohr-Coulomb at that angle");
+    FrictionalCone::describe(fields);
   }
 };
 
@@ -112,10 +56,10 @@ struct DruckerPragerParameters {
 template <class Real>
 struct DruckerPragerConstants {
   HenckyConstants<Real> elastic;
-  Real cone;  ///< bc = alpha (3 lambda + 2 mu) / (2 mu)
+  Real yield_slope;  ///< bc = alpha (3 lambda + 2 mu) / (2 mu)
 
   explicit DruckerPragerConstants(const DruckerPragerParameters& p)
-      : elastic(p.elasticity), cone(static_cast<Real>(p.cone_of_slope(p.cone_slope()))) {}
+      : elastic(p.elasticity), yield_slope(static_cast<Real>(p.yield_slope())) {}
 };
 
 }  // namespace repose
@@ -129,7 +73,8 @@ struct DruckerPragerConstants {
 #define REPOSE_KERNELS_MATERIAL_DRUCKER_PRAGER_H
 #endif
 
-#include "kernels/base/small_matrix.h"
+#include "kernels/base/small_matrix-inl.h"
+#include "kernels/material/drucker_prager_response-inl.h"
 #include "kernels/material/hencky.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -148,14 +93,14 @@ struct DruckerPrager {
 
   /// Z: the trial strain brought back to the cone. Its trace is kept unless the sand has opened.
   template <class N>
-  REPOSE_INLINE static Sym3<N> project(const DruckerPragerConstants<Scalar<N>>& c, const Sym3<N>& eps) {
+  REPOSE_INLINE static Sym3<N> return_map(const DruckerPragerConstants<Scalar<N>>& c, const Sym3<N>& eps) {
     using T = Scalar<N>;
     const N zero(T(0)), one(T(1));
     const N t = trace(eps);
     const N mean = t * N(T(1) / 3);
     const Sym3<N> e = plus_identity(eps, -mean);
     const N n = sqrt(square_norm(e));
-    const N dg = fma(N(c.cone), t, n);
+    const N dg = fma(N(c.yield_slope), t, n);
     const N tiny(std::numeric_limits<T>::min());
     const N kept = one - max(dg, zero) / max(n, tiny);  // 1 in case I, 1 - dg/n in case III
     const auto opened = t >= zero;
@@ -167,23 +112,24 @@ struct DruckerPrager {
 
   /// The same by numbers per particle (YieldInput): the strain, what it lost, and by how much shear opened it.
   template <class N>
-  struct Shaped {
+  struct Returned {
     Sym3<N> strain;
     N plastic;  ///< |eps - strain|
     N sheared;  ///< the same, but 0 where the sand has opened
     N dilated;  ///< 3 bD dg
   };
   template <class N>
-  REPOSE_INLINE static Shaped<N> project_shaped(const Sym3<N>& eps, N cone, N cohesion, N dilatancy) {
+  REPOSE_INLINE static Returned<N> return_map_per_particle(const Sym3<N>& eps, N yield_slope, N cohesion,
+                                                           N dilatancy) {
     using T = Scalar<N>;
     const N zero(T(0)), one(T(1)), third(T(1) / 3), tiny(std::numeric_limits<T>::min());
     const N t = trace(eps);
     const Sym3<N> e = plus_identity(eps, -(t * third));
     const N n = sqrt(square_norm(e));
     const N opening = N(T(3)) * dilatancy;
-    const N dg = min(max(fma(cone, t, n - cohesion) / fma(opening, cone, one), zero), n);
+    const N dg = min(max(fma(yield_slope, t, n - cohesion) / fma(opening, yield_slope, one), zero), n);
     const N sheared = fnma(opening, dg, t);
-    const N apex = cohesion / max(cone, tiny);
+    const N apex = cohesion / max(yield_slope, tiny);
     const auto opened = sheared > apex;
     const N kept_norm = select(opened, zero, n - dg);
     const N kept = select(n > tiny, kept_norm / max(n, tiny), one);
@@ -195,6 +141,35 @@ struct DruckerPrager {
     const N yielded = select(inside, zero, plastic);
     return {select(inside, eps, plus_identity(kept * e, left * third)), yielded, select(opened, zero, yielded),
             select(opened, zero, opening * dg)};
+  }
+
+  // How it answers within an implicit step: drucker_prager_response-inl.h.
+
+  template <bool whole, class N>
+  REPOSE_INLINE static Response<N> respond(const DruckerPragerConstants<Scalar<N>>& c, const N (&eps)[3],
+                                           const YieldSurface<N>& surface) {
+    return returned_response<whole>(c.elastic, eps, surface);
+  }
+  template <class N>
+  REPOSE_INLINE static Response<N> elastic_response(const DruckerPragerConstants<Scalar<N>>& c,
+                                                    const N (&eps)[3]) {
+    return hencky_response(c.elastic, eps);
+  }
+  template <class N>
+  REPOSE_INLINE static Response<N> unilateral_response(const DruckerPragerConstants<Scalar<N>>& c,
+                                                       const UnilateralConstants<Scalar<N>>& u,
+                                                       const N (&eps)[3]) {
+    return repose::HWY_NAMESPACE::unilateral_response(c.elastic, u, eps);
+  }
+  template <class N>
+  REPOSE_INLINE static Sym3<N> unilateral_stress(const DruckerPragerConstants<Scalar<N>>& c,
+                                                 const UnilateralConstants<Scalar<N>>& u, const Sym3<N>& eps) {
+    return repose::HWY_NAMESPACE::unilateral_stress(c.elastic, u, eps);
+  }
+  /// The elastic strain whose stress is tau.
+  template <class N>
+  REPOSE_INLINE static Sym3<N> elastic_strain(const DruckerPragerConstants<Scalar<N>>& c, const Sym3<N>& tau) {
+    return hencky_strain(c.elastic, tau);
   }
 };
 

@@ -24,10 +24,9 @@ inline double hencky_energy_density(const Elasticity& elasticity, const double (
 }
 
 /// An elastic solid.
-struct HenckyParameters {
+struct HenckyParameters : MaterialTraits {
   static constexpr const char* kName = "elastic";
   static constexpr const char* kMeaning = "an elastic solid of Hencky strain";
-  static constexpr bool kYields = false;
   template <class Real>
   using Constants = HenckyConstants<Real>;
 
@@ -62,8 +61,8 @@ struct HenckyConstants {
 #define REPOSE_KERNELS_MATERIAL_HENCKY_H
 #endif
 
-#include "kernels/base/matrix_function.h"
-#include "kernels/material/response.h"
+#include "kernels/base/matrix_function-inl.h"
+#include "kernels/material/response-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -108,7 +107,7 @@ REPOSE_INLINE Response<N> hencky_response(const HenckyConstants<Scalar<N>>& c, c
   return r;
 }
 
-struct HenckyElastic {
+struct Hencky {
   using Parameters = HenckyParameters;
   template <class T>
   using Constants = HenckyConstants<T>;

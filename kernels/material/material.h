@@ -1,8 +1,10 @@
-// Repose: what every material shares: its elastic moduli and how they follow from the two numbers that
-// engineers quote, Young's modulus and Poisson's ratio.
+// Repose: what every material shares: its traits, and its elastic moduli, which follow from the two numbers
+// that engineers quote, Young's modulus and Poisson's ratio.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <concepts>
 
 #include "kernels/base/quantity.h"
 
@@ -37,6 +39,36 @@ struct Elasticity {
         "poisson_ratio", poisson_ratio,
         {.unit = "", .meaning = "sideways over lengthwise strain", .low = 0.0, .high = 0.5, .high_open = true});
   }
+};
+
+/// What a material is, for those who know it by its traits alone; its parameters say otherwise where it is
+/// more. An elastic one has a stress for every strain. One that yields brings strains back that its yield
+/// surface does not allow. One with a cone yields where shear exceeds a share of pressure (cone.h): effects of
+/// sand act on it.
+struct MaterialTraits {
+  static constexpr bool kYields = false;
+  static constexpr bool kHasCone = false;  ///< then it yields, too
+  /// Names of the numbers per particle that its law keeps beside the strain.
+  static constexpr std::array<const char*, 0> kChannels{};
+  /// What particles begin with.
+  std::array<double, 0> initial_channels() const { return {}; }
+};
+
+/// What the parameters of a material must have, beside `template <class Fields> void describe(Fields&)` for its
+/// keys. Of its law, what kernels run, the concepts stand in law-inl.h.
+template <class P>
+concept MaterialData = std::derived_from<P, MaterialTraits> && std::default_initializable<P> &&
+    requires(const P& material, const double (&strain)[6]) {
+  { P::kName } -> std::convertible_to<const char*>;  // its "type" in scenes
+  { P::kMeaning } -> std::convertible_to<const char*>;
+  { material.elasticity.density } -> std::convertible_to<double>;
+  { material.energy_density(strain) } -> std::same_as<double>;  // J/m^3, whose slope the stress is
+  typename P::template Constants<float>;                        // what kernels need, made from the parameters
+  requires P::kChannels.size() == decltype(material.initial_channels())().size();
+  requires !P::kHasCone || (P::kYields && requires {
+    material.cone();
+    material.yield_slope();
+  });
 };
 
 /// Over which stretch of strain a unilateral energy leaves out tension (Tampubolon et al. 2017, eqs. 7-10).

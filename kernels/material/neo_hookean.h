@@ -48,10 +48,9 @@ inline double trace_of_exp_beyond_linear(const double (&strain)[6]) {
 }
 
 /// An elastic solid that may be stretched far.
-struct NeoHookeanParameters {
+struct NeoHookeanParameters : MaterialTraits {
   static constexpr const char* kName = "neo_hookean";
   static constexpr const char* kMeaning = "an elastic solid for large stretches, such as rubber";
-  static constexpr bool kYields = false;
   template <class Real>
   using Constants = NeoHookeanConstants<Real>;
 
@@ -89,8 +88,8 @@ struct NeoHookeanConstants {
 #define REPOSE_KERNELS_MATERIAL_NEO_HOOKEAN_H
 #endif
 
-#include "kernels/base/matrix_function.h"
-#include "kernels/material/response.h"
+#include "kernels/base/matrix_function-inl.h"
+#include "kernels/material/response-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {

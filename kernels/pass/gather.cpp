@@ -8,9 +8,10 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
-#include "kernels/base/simd.h"
+#include "kernels/base/simd-inl.h"
 #include "kernels/layout/stencil.h"
-#include "kernels/pass/tables.h"
+#include "kernels/pass/fill.h"
+#include "kernels/pass/for_each_transfer.h"
 #include "kernels/transfer/transfers.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -244,7 +245,7 @@ void interpolate(const ParticleSpan<T>& particles, int flat_axis, const T* arena
 template <class T>
 void fill_precision(Kernels<T>& table) {
   for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
-    // A skew matrix is told, but all of C is kept: RPIC gathers as APIC does.
+    // A skew matrix goes to the nodes, but all of C is kept: RPIC gathers as APIC does.
     constexpr Affine kAffine = Transfer::kAffine == Affine::kNone ? Affine::kNone : Affine::kFull;
     table.transfer[s][t].gather = gather<Stencil, kAffine, force_of<Stencil, Transfer>(), T>;
     table.transfer[s][t].gradient = gather<Stencil, Affine::kNone, force_of<Stencil, Transfer>(), T>;
@@ -264,6 +265,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(gather)
+REPOSE_DEFINE_FILL(gather, Kernels)
 }  // namespace repose
 #endif

@@ -6,9 +6,10 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
-#include "kernels/base/matrix_arrays.h"
+#include "kernels/base/matrix_arrays-inl.h"
 #include "kernels/material/materials.h"
-#include "kernels/pass/tables.h"
+#include "kernels/pass/fill.h"
+#include "kernels/pass/own_channels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -21,7 +22,7 @@ REPOSE_INLINE void prefetch_strain(const MaterialInput<T>& in, std::size_t first
   for (int k = 0; k < 6; ++k) Pack<T>::prefetch(in.strain[k] + (static_cast<std::ptrdiff_t>(first) + in.ahead));
 }
 
-template <class T>
+template <class Law, class T>
 void trial(const MaterialInput<T>& in) {
   const Pack<T> dt(in.dt);
   for (const auto [first, lanes] : packs<T>(in.count)) {
@@ -29,27 +30,42 @@ void trial(const MaterialInput<T>& in) {
     Mat3<Pack<T>> step;
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * Pack<T>::load_first(in.gradient[k] + first, lanes);
-    store_sym3(hencky_trial(load_sym3<T>(in.strain, first, lanes), step), in.strain, first, lanes);
+    const auto strain = load_sym3<T>(in.strain, first, lanes);
+    if constexpr (HasOwnTrial<Law>) {
+      const auto& constants = *static_cast<const typename Law::template Constants<T>*>(in.constants);
+      auto own = load_own<Law>(in, first, lanes);
+      store_sym3(Law::trial(constants, strain, own.number, step), in.strain, first, lanes);
+      store_own<Law>(own, in, first, lanes);
+    } else {
+      store_sym3(hencky_trial(strain, step), in.strain, first, lanes);
+    }
   }
 }
 
-template <class Material, class T>
-void project(const MaterialInput<T>& in) {
-  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
+template <class Law, class T>
+void return_map(const MaterialInput<T>& in) {
+  const auto& constants = *static_cast<const typename Law::template Constants<T>*>(in.constants);
   for (const auto [first, lanes] : packs<T>(in.count)) {
     const auto strain = load_sym3<T>(in.strain, first, lanes);
-    store_sym3(Material::project(constants, strain), in.strain, first, lanes);
+    if constexpr (kOwn<Law> == 0) {
+      store_sym3(Law::return_map(constants, strain), in.strain, first, lanes);
+    } else {
+      auto own = load_own<Law>(in, first, lanes);
+      store_sym3(Law::return_map(constants, strain, own.number), in.strain, first, lanes);
+      store_own<Law>(own, in, first, lanes);
+    }
   }
 }
 
-template <class Material, class T>
-void project_shaped(const MaterialInput<T>& in, const YieldInput<T>& surface) {
+template <class Law, class T>
+void return_map_per_particle(const MaterialInput<T>& in, const YieldInput<T>& surface) {
   using P = Pack<T>;
   for (const auto [first, lanes] : packs<T>(in.count)) {
     const auto number = [first = first, lanes = lanes](const T* from)
                             HWY_ATTR { return P::load_first(from + first, lanes); };
-    const auto done = Material::project_shaped(load_sym3<T>(in.strain, first, lanes), number(surface.cone),
-                                               number(surface.cohesion), number(surface.dilatancy));
+    const auto done =
+        Law::return_map_per_particle(load_sym3<T>(in.strain, first, lanes), number(surface.yield_slope),
+                                     number(surface.cohesion), number(surface.dilatancy));
     store_sym3(done.strain, in.strain, first, lanes);
     done.plastic.store_first(surface.plastic + first, lanes);
     done.sheared.store_first(surface.sheared + first, lanes);
@@ -57,33 +73,34 @@ void project_shaped(const MaterialInput<T>& in, const YieldInput<T>& surface) {
   }
 }
 
-template <class Material, class T>
+template <class Law, class T>
 void stress(const MaterialInput<T>& in) {
-  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
+  const auto& constants = *static_cast<const typename Law::template Constants<T>*>(in.constants);
   for (const auto [first, lanes] : packs<T>(in.count)) {
     prefetch_strain(in, first);
     const auto strain = load_sym3<T>(in.strain, first, lanes);
-    store_sym3(Material::stress(constants, strain), in.stress, first, lanes);
+    if constexpr (kOwn<Law> == 0) {
+      store_sym3(Law::stress(constants, strain), in.stress, first, lanes);
+    } else {
+      store_sym3(Law::stress(constants, strain, load_own<Law>(in, first, lanes).number), in.stress, first,
+                 lanes);
+    }
   }
 }
 
-template <class Material, class T>
-MaterialKernels<T> material_kernels() {
-  MaterialKernels<T> table{};
-  table.trial = trial<T>;
-  table.stress = stress<Material, T>;
-  if constexpr (Material::Parameters::kYields) {
-    table.project = project<Material, T>;
-    table.project_shaped = project_shaped<Material, T>;
-  }
-  return table;
+template <class Law, class T>
+void fill_law(MaterialKernels<T>& table) {
+  table.trial = trial<Law, T>;
+  table.stress = stress<Law, T>;
+  if constexpr (Law::Parameters::kYields) table.return_map = return_map<Law, T>;
+  if constexpr (Law::Parameters::kHasCone) table.return_map_per_particle = return_map_per_particle<Law, T>;
 }
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
   static_assert(std::tuple_size_v<Materials> == Kernels<T>::kMaterials);
   [&]<std::size_t... k>(std::index_sequence<k...>) {
-    ((table.material[k] = material_kernels<std::tuple_element_t<k, Materials>, T>()), ...);
+    (fill_law<std::tuple_element_t<k, Materials>>(table.material[k]), ...);
   }
   (std::make_index_sequence<std::tuple_size_v<Materials>>());
 }
@@ -100,6 +117,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(material)
+REPOSE_DEFINE_FILL(material, Kernels)
 }  // namespace repose
 #endif

@@ -10,8 +10,9 @@
 #include "kernels/base/targets.h"
 
 #include "kernels/layout/stencil.h"
-#include "kernels/material/response.h"
-#include "kernels/pass/tables.h"
+#include "kernels/material/response-inl.h"
+#include "kernels/pass/fill.h"
+#include "kernels/pass/for_each_transfer.h"
 #include "kernels/transfer/transfers.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -164,6 +165,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(node_stiffness)
+REPOSE_DEFINE_FILL(node_stiffness, Kernels)
 }  // namespace repose
 #endif

@@ -8,8 +8,9 @@
 #include <bit>
 #include <limits>
 
-#include "kernels/base/simd.h"
-#include "kernels/pass/tables.h"
+#include "kernels/base/simd-inl.h"
+#include "kernels/pass/fill.h"
+#include "kernels/pass/for_each_transfer.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -151,9 +152,9 @@ void fill_precision(Kernels<T>& table) {
     table.stencil[s].add_arena = add_arena<Stencil::kLowestBase, T>;
     table.stencil[s].load_arena = load_arena<Stencil::kLowestBase, T>;
   });
-  table.normalize = normalize<T>;
-  table.accelerate = accelerate<T>;
-  table.bound = bound<T>;
+  table.node.normalize = normalize<T>;
+  table.node.accelerate = accelerate<T>;
+  table.node.bound = bound<T>;
 }
 
 void fill(KernelTables& tables) {
@@ -168,6 +169,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(nodes)
+REPOSE_DEFINE_FILL(nodes, Kernels)
 }  // namespace repose
 #endif

@@ -1,5 +1,5 @@
-// Repose: passes over particles that belong to no material and no transfer: moving them, deciding whether a
-// step may be accepted, and the two halves of the volume correction.
+// Repose: passes over particles that belong to no material and no transfer: moving them, and the acceptance
+// check of a step.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/particles.cpp"
 #include "hwy/foreach_target.h"
@@ -8,8 +8,8 @@
 
 #include <limits>
 
-#include "kernels/base/small_matrix.h"
-#include "kernels/pass/tables.h"
+#include "kernels/base/small_matrix-inl.h"
+#include "kernels/pass/fill.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -48,8 +48,8 @@ void advance(const ParticleSpan<T>& particles, const T* const velocity[3], const
 }
 
 template <class T>
-std::size_t inspect(const T* const velocity[3], const T* const gradient[9], std::size_t count, T dt,
-                    T spacing) {
+std::size_t first_failed(const T* const velocity[3], const T* const gradient[9], std::size_t count, T dt,
+                         T spacing) {
   using P = Pack<T>;
   const P step(dt), most(spacing / dt), zero(T(0)), one(T(1));
   for (const auto [first, lanes] : packs<T>(count)) {
@@ -73,40 +73,10 @@ std::size_t inspect(const T* const velocity[3], const T* const gradient[9], std:
   return count;
 }
 
-/// eps <- eps + (vc/3) I before the return map; the trace of the trial strain is kept for the second half
-/// (Tampubolon et al. 2017, eq. 27).
-template <class T>
-void open_volume(T* const strain[6], const T* gained, T* trace_of_trial, std::size_t count) {
-  using P = Pack<T>;
-  for (const auto [first, lanes] : packs<T>(count)) {
-    const P xx = P::load_first(strain[0] + first, lanes), yy = P::load_first(strain[3] + first, lanes),
-            zz = P::load_first(strain[5] + first, lanes);
-    const P third = P(T(1) / 3) * P::load_first(gained + first, lanes);
-    (xx + yy + zz).store_first(trace_of_trial + first, lanes);
-    (xx + third).store_first(strain[0] + first, lanes);
-    (yy + third).store_first(strain[3] + first, lanes);
-    (zz + third).store_first(strain[5] + first, lanes);
-  }
-}
-
-/// vc <- vc + tr(trial) - tr(H) after it (eq. 26), with the sign that keeps tr(H) + vc what tr(trial) + vc was.
-template <class T>
-void close_volume(const T* const strain[6], T* gained, const T* trace_of_trial, std::size_t count) {
-  using P = Pack<T>;
-  for (const auto [first, lanes] : packs<T>(count)) {
-    const P kept = P::load_first(strain[0] + first, lanes) + P::load_first(strain[3] + first, lanes) +
-                   P::load_first(strain[5] + first, lanes);
-    const P total = P::load_first(gained + first, lanes) + P::load_first(trace_of_trial + first, lanes);
-    (total - kept).store_first(gained + first, lanes);
-  }
-}
-
 template <class T>
 void fill_precision(Kernels<T>& table) {
-  table.advance = advance<T>;
-  table.inspect = inspect<T>;
-  table.open_volume = open_volume<T>;
-  table.close_volume = close_volume<T>;
+  table.particle.advance = advance<T>;
+  table.particle.first_failed = first_failed<T>;
 }
 
 void fill(KernelTables& tables) {
@@ -121,6 +91,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(particles)
+REPOSE_DEFINE_FILL(particles, Kernels)
 }  // namespace repose
 #endif

@@ -8,9 +8,10 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
-#include "kernels/base/simd.h"
+#include "kernels/base/simd-inl.h"
 #include "kernels/layout/stencil.h"
-#include "kernels/pass/tables.h"
+#include "kernels/pass/fill.h"
+#include "kernels/pass/for_each_transfer.h"
 #include "kernels/transfer/transfers.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,7 +41,7 @@ struct Staged {
 
 /// A, entry (row, axis).
 template <Affine affine, class T>
-REPOSE_INLINE Pack<T> told(const Pack<T> (&c)[3][3], int row, int axis, T kept_stretching) {
+REPOSE_INLINE Pack<T> p2g_affine(const Pack<T> (&c)[3][3], int row, int axis, T kept_stretching) {
   if constexpr (affine == Affine::kFull) return c[row][axis];
   const Pack<T> half(T(0.5));
   const Pack<T> spin = half * (c[row][axis] - c[axis][row]), stretch = half * (c[row][axis] + c[axis][row]);
@@ -75,7 +76,7 @@ REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size
       if constexpr (S::kAffine) {
         // The single node of a flat axis has no lever: RPIC's mirror must not give it one.
         const bool flat = affine == Affine::kSkew && axis == in.lattice.flat_axis;
-        slope[axis][row] = flat ? zero : mass_per_cell * told<affine>(c, row, axis, in.kept_stretching);
+        slope[axis][row] = flat ? zero : mass_per_cell * p2g_affine<affine>(c, row, axis, in.kept_stretching);
       } else {
         slope[axis][row] = zero;
       }
@@ -268,6 +269,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(scatter)
+REPOSE_DEFINE_FILL(scatter, Kernels)
 }  // namespace repose
 #endif

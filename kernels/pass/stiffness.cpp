@@ -11,12 +11,12 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
-#include "kernels/base/eigen_sym3.h"
-#include "kernels/base/matrix_arrays.h"
-#include "kernels/material/drucker_prager_response.h"
+#include "kernels/base/eigen_sym3-inl.h"
+#include "kernels/base/matrix_arrays-inl.h"
 #include "kernels/material/materials.h"
-#include "kernels/material/response.h"
-#include "kernels/pass/tables.h"
+#include "kernels/material/response-inl.h"
+#include "kernels/pass/fill.h"
+#include "kernels/pass/own_channels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -56,7 +56,8 @@ REPOSE_INLINE Mat3<Pack<T>> load_map(const T* const gradient[9], T dt, std::size
 
 /// matrix <- tau (I + dt grad v)^-T; whether no det(I + dt grad v) is nearly zero or less.
 template <class T>
-bool turn(const T* const stress[6], const T* const gradient[9], T dt, T* const matrix[9], std::size_t count) {
+bool pull_back(const T* const stress[6], const T* const gradient[9], T dt, T* const matrix[9],
+               std::size_t count) {
   bool upright = true;
   for (const auto [first, lanes] : packs<T>(count)) {
     const Mat3<Pack<T>> map = load_map<T>(gradient, dt, first, lanes), back = inverse(map);
@@ -116,48 +117,63 @@ REPOSE_INLINE void store_tangent(const Eigen3<Pack<T>>& axes, const Mat3<Pack<T>
   }
 }
 
-template <class Material, TangentMode mode, class T>
+/// How a law answers in a mode at trial strains along their axes.
+template <class Law, TangentMode mode, class T>
+REPOSE_INLINE Response<Pack<T>> answer(const TangentInput<T>& in, const Pack<T> (&eps)[3], std::size_t first,
+                                       std::size_t lanes) {
+  using P = Pack<T>;
+  constexpr bool kWithin = mode == TangentMode::kExact || mode == TangentMode::kProjected;
+  constexpr bool kWhole = mode == TangentMode::kExact;
+  const auto& constants = *static_cast<const typename Law::template Constants<T>*>(in.material.constants);
+  if constexpr (!Law::Parameters::kYields) {
+    if constexpr (kOwn<Law> == 0) return Law::respond(constants, eps);
+    if constexpr (kOwn<Law> != 0)
+      return Law::respond(constants, eps, load_own<Law>(in.material, first, lanes).number);
+  } else if constexpr (mode == TangentMode::kUnilateral && Law::Parameters::kHasCone) {
+    return Law::unilateral_response(constants, in.unilateral, eps);
+  } else if constexpr (!kWithin) {
+    return Law::elastic_response(constants, eps);
+  } else if constexpr (Law::Parameters::kHasCone) {
+    const auto number = [first, lanes](const T* from, T without) HWY_ATTR {
+      return from == nullptr ? P(without) : P::load_first(from + first, lanes);
+    };
+    const YieldSurface<P> surface{number(in.surface.yield_slope, constants.yield_slope),
+                                  number(in.surface.cohesion, T(0)), number(in.surface.dilatancy, T(0))};
+    return Law::template respond<kWhole>(constants, eps, surface);
+  } else if constexpr (kOwn<Law> == 0) {
+    return Law::template respond<kWhole>(constants, eps);
+  } else {
+    return Law::template respond<kWhole>(constants, eps, load_own<Law>(in.material, first, lanes).number);
+  }
+}
+
+template <class Law, TangentMode mode, class T>
 void linearize(const TangentInput<T>& in) {
   using P = Pack<T>;
-  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.material.constants);
   for (const auto [first, lanes] : packs<T>(in.material.count)) {
     const Eigen3<P> axes = eigen_sym3(load_sym3<T>(in.material.strain, first, lanes));
-    Response<P> response;
-    if constexpr (!Material::Parameters::kYields) {
-      response = Material::respond(constants, axes.value);
-    } else if constexpr (mode == TangentMode::kLagged) {
-      response = hencky_response(constants.elastic, axes.value);
-    } else if constexpr (mode == TangentMode::kUnilateral) {
-      response = unilateral_response(constants.elastic, in.unilateral, axes.value);
-    } else {
-      const auto number = [first = first, lanes = lanes](const T* from, T without) HWY_ATTR {
-        return from == nullptr ? P(without) : P::load_first(from + first, lanes);
-      };
-      const YieldSurface<P> surface{number(in.surface.cone, constants.cone), number(in.surface.cohesion, T(0)),
-                                    number(in.surface.dilatancy, T(0))};
-      response = returned_response<mode == TangentMode::kExact>(constants.elastic, axes.value, surface);
-    }
+    const Response<P> response = answer<Law, mode>(in, axes.value, first, lanes);
     const auto back = inverse(load_map<T>(in.material.gradient, in.material.dt, first, lanes));
     store_tangent(axes, back, response, tangent_at(in.tangent, first));
   }
 }
 
 /// Where the next linear model is made (docs/math.md, 45): with eps the trial strain and e the elastic strain
-/// of the stress that was foretold, at the eps' of
+/// of the stress that was predicted, at the eps' of
 ///   Z(eps') + theta eps' = e + theta eps,
 /// which has Z(eps') = Z((e + theta eps) / (1 + theta)), for a return map keeps the direction of the deviator,
 /// and in the cone the trace too.
-template <class Material, class T>
-void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const offset[9]) {
+template <class Law, class T>
+void linearization_point(const TangentInput<T>& in, const T* const predicted[9], T* const offset[9]) {
   using P = Pack<T>;
   static constexpr int kSymmetric[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
   constexpr T kTheta = T(kTrialWeight);
-  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.material.constants);
+  const auto& constants = *static_cast<const typename Law::template Constants<T>*>(in.material.constants);
   const P theta(kTheta), per_theta(T(1) / kTheta), share(T(1) / (T(1) + kTheta)), half(T(0.5));
   for (const auto [first, lanes] : packs<T>(in.material.count)) {
     const Sym3<P> trial = load_sym3<T>(in.material.strain, first, lanes);
     const Mat3<P> map = load_map<T>(in.material.gradient, in.material.dt, first, lanes);
-    const Mat3<P> s = load_mat3<T>(foretold, first, lanes);
+    const Mat3<P> s = load_mat3<T>(predicted, first, lanes);
     const auto product = [&](int r, int c) HWY_ATTR {
       return fma(s.m[r][0], map.m[c][0], fma(s.m[r][1], map.m[c][1], s.m[r][2] * map.m[c][2]));
     };
@@ -168,15 +184,15 @@ void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const off
       tau[k] = half * (product(r, c) + product(c, r));
     }
     const Sym3<P> stress{tau[0], tau[1], tau[2], tau[3], tau[4], tau[5]};
-    const Sym3<P> sum = fma(theta, trial, hencky_strain(constants.elastic, stress));
+    const Sym3<P> sum = fma(theta, trial, Law::elastic_strain(constants, stress));
     Sym3<P> returned;
-    if (in.surface.cone == nullptr) {
-      returned = Material::project(constants, share * sum);
+    if (in.surface.yield_slope == nullptr) {
+      returned = Law::return_map(constants, share * sum);
     } else {
       const auto number = [first = first, lanes = lanes](const T* from)
                               HWY_ATTR { return P::load_first(from + first, lanes); };
-      returned = Material::project_shaped(share * sum, number(in.surface.cone), number(in.surface.cohesion),
-                                          number(in.surface.dilatancy))
+      returned = Law::return_map_per_particle(share * sum, number(in.surface.yield_slope),
+                                              number(in.surface.cohesion), number(in.surface.dilatancy))
                      .strain;
     }
     Sym3<P> point = per_theta * fma(P(T(-1)), returned, sum);
@@ -200,12 +216,12 @@ void resolve(const TangentInput<T>& in, const T* const foretold[9], T* const off
 }
 
 /// stress <- that of the unilateral energy at the trial strain
-template <class Material, class T>
-void fading_stress(const MaterialInput<T>& in, const UnilateralConstants<T>& unilateral) {
-  const auto& constants = *static_cast<const typename Material::template Constants<T>*>(in.constants);
+template <class Law, class T>
+void unilateral_stress(const MaterialInput<T>& in, const UnilateralConstants<T>& unilateral) {
+  const auto& constants = *static_cast<const typename Law::template Constants<T>*>(in.constants);
   for (const auto [first, lanes] : packs<T>(in.count)) {
     const auto strain = load_sym3<T>(in.strain, first, lanes);
-    store_sym3<T>(unilateral_stress(constants.elastic, unilateral, strain), in.stress, first, lanes);
+    store_sym3<T>(Law::unilateral_stress(constants, unilateral, strain), in.stress, first, lanes);
   }
 }
 
@@ -262,26 +278,24 @@ void apply_tangent(const T* tangent, const T* const gradient[9], T* const matrix
   }
 }
 
-template <class Material, class T>
-void fill_material_tangents(MaterialKernels<T>& table) {
-  table.linearize[0] = linearize<Material, TangentMode::kExact, T>;
-  table.linearize[1] = linearize<Material, TangentMode::kProjected, T>;
-  table.linearize[2] = linearize<Material, TangentMode::kLagged, T>;
-  table.linearize[3] = linearize<Material, TangentMode::kUnilateral, T>;
-  table.fading_stress = nullptr;
-  table.resolve = nullptr;
-  if constexpr (Material::Parameters::kYields) {
-    table.fading_stress = fading_stress<Material, T>;
-    table.resolve = resolve<Material, T>;
+template <class Law, class T>
+void fill_tangents_of(MaterialKernels<T>& table) {
+  table.linearize[0] = linearize<Law, TangentMode::kExact, T>;
+  table.linearize[1] = linearize<Law, TangentMode::kProjected, T>;
+  table.linearize[2] = linearize<Law, TangentMode::kLagged, T>;
+  table.linearize[3] = linearize<Law, TangentMode::kUnilateral, T>;
+  if constexpr (Law::Parameters::kHasCone) {
+    table.unilateral_stress = unilateral_stress<Law, T>;
+    table.linearization_point = linearization_point<Law, T>;
   }
 }
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
-  table.turn = turn<T>;
-  table.apply_tangent = apply_tangent<T>;
+  table.tangent.pull_back = pull_back<T>;
+  table.tangent.apply = apply_tangent<T>;
   [&]<std::size_t... k>(std::index_sequence<k...>) {
-    (fill_material_tangents<std::tuple_element_t<k, Materials>>(table.material[k]), ...);
+    (fill_tangents_of<std::tuple_element_t<k, Materials>>(table.material[k]), ...);
   }
   (std::make_index_sequence<std::tuple_size_v<Materials>>());
 }
@@ -298,6 +312,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(stiffness)
+REPOSE_DEFINE_FILL(stiffness, Kernels)
 }  // namespace repose
 #endif

@@ -5,8 +5,8 @@
 #include "hwy/highway.h"
 #include "kernels/base/targets.h"
 
-#include "kernels/base/simd.h"
-#include "kernels/pass/tables.h"
+#include "kernels/base/simd-inl.h"
+#include "kernels/pass/fill.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace repose {
@@ -100,6 +100,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace repose {
-REPOSE_DEFINE_FILL(vectors)
+REPOSE_DEFINE_FILL(vectors, Kernels)
 }  // namespace repose
 #endif

@@ -33,8 +33,8 @@ void trial(const MaterialInput<Real>& in, double least) {
 }
 
 template <class Real>
-void project_drucker_prager(const MaterialInput<Real>& in) {
-  const double cone = static_cast<const DruckerPragerConstants<Real>*>(in.constants)->cone;
+void return_map_drucker_prager(const MaterialInput<Real>& in) {
+  const double cone = static_cast<const DruckerPragerConstants<Real>*>(in.constants)->yield_slope;
   for (std::size_t p = 0; p < in.count; ++p) {
     const Symmetric projected = with_eigenvalues(load(in.strain, p), [cone](Eigen::Vector3d& strain) {
       const double trace = strain.sum();
@@ -72,7 +72,7 @@ void stress(const NeoHookeanConstants<Real>& elastic, const MaterialInput<Real>&
 
 #define REPOSE_FOR(Real)                                                          \
   template void trial(const MaterialInput<Real>&, double);                        \
-  template void project_drucker_prager(const MaterialInput<Real>&);               \
+  template void return_map_drucker_prager(const MaterialInput<Real>&);            \
   template void stress(const HenckyConstants<Real>&, const MaterialInput<Real>&); \
   template void stress(const NeoHookeanConstants<Real>&, const MaterialInput<Real>&);
 REPOSE_FOR(float)

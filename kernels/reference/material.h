@@ -24,7 +24,7 @@ void trial(const MaterialInput<Real>& in, double least = sizeof(Real) == 4 ? 1e-
 /// strain <- its image on or in the cone, by principal strains (Klar et al. 2016, supplement, eqs. 27-28). The
 /// constants are DruckerPragerConstants<Real>.
 template <class Real>
-void project_drucker_prager(const MaterialInput<Real>& in);
+void return_map_drucker_prager(const MaterialInput<Real>& in);
 
 /// stress <- 2 mu strain + lambda tr(strain) I.
 template <class Real>

@@ -42,8 +42,8 @@ void advance(const ParticleSpan<Real>& particles, const Real* const velocity[3],
 }
 
 template <class Real>
-std::size_t inspect(const Real* const velocity[3], const Real* const gradient[9], std::size_t count, Real dt,
-                    Real spacing) {
+std::size_t first_failed(const Real* const velocity[3], const Real* const gradient[9], std::size_t count,
+                         Real dt, Real spacing) {
   for (std::size_t p = 0; p < count; ++p) {
     const double ratio = volume_ratio(gradient, p, double{dt});
     bool good = ratio > 0 && std::isfinite(static_cast<Real>(ratio));
@@ -68,11 +68,11 @@ void close_volume(const Real* const strain[6], Real* gained, const Real* trace_o
   }
 }
 
-#define REPOSE_FOR(Real)                                                                             \
-  template void advance(const ParticleSpan<Real>&, const Real* const[3], const Real* const[9], Real, \
-                        Motion<Real>&);                                                              \
-  template std::size_t inspect(const Real* const[3], const Real* const[9], std::size_t, Real, Real); \
-  template void open_volume(Real* const[6], const Real*, Real*, std::size_t);                        \
+#define REPOSE_FOR(Real)                                                                                  \
+  template void advance(const ParticleSpan<Real>&, const Real* const[3], const Real* const[9], Real,      \
+                        Motion<Real>&);                                                                   \
+  template std::size_t first_failed(const Real* const[3], const Real* const[9], std::size_t, Real, Real); \
+  template void open_volume(Real* const[6], const Real*, Real*, std::size_t);                             \
   template void close_volume(const Real* const[6], Real*, const Real*, std::size_t);
 REPOSE_FOR(float)
 REPOSE_FOR(double)

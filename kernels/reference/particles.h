@@ -13,8 +13,8 @@ template <class Real>
 void advance(const ParticleSpan<Real>& particles, const Real* const velocity[3], const Real* const gradient[9],
              Real cells_per_velocity, Motion<Real>& motion);
 template <class Real>
-std::size_t inspect(const Real* const velocity[3], const Real* const gradient[9], std::size_t count, Real dt,
-                    Real spacing);
+std::size_t first_failed(const Real* const velocity[3], const Real* const gradient[9], std::size_t count,
+                         Real dt, Real spacing);
 template <class Real>
 void open_volume(Real* const strain[6], const Real* gained, Real* trace_of_trial, std::size_t count);
 template <class Real>

@@ -60,7 +60,7 @@ double inverse_d(std::size_t stencil, double spacing, bool flat) {
 
 /// A of particle p.
 template <class Real>
-Matrix told(Affine affine, const ScatterInput<Real>& in, std::size_t p) {
+Matrix p2g_affine(Affine affine, const ScatterInput<Real>& in, std::size_t p) {
   Matrix a{};
   if (affine == Affine::kNone) return a;
   const double kept = affine == Affine::kFull ? 1.0 : double{in.kept_stretching};
@@ -120,7 +120,7 @@ void scatter(std::size_t stencil, std::size_t transfer, const ScatterInput<Real>
   const double dx = in.lattice.spacing, m = in.mass, dt_v0 = in.impulse_volume;
   const bool moments = by_moments(stencil, transfer);
   for (std::size_t p = 0; p < in.particles.count; ++p) {
-    const Matrix a = told(kTransferFigures[transfer].affine, in, p);
+    const Matrix a = p2g_affine(kTransferFigures[transfer].affine, in, p);
     for_each_node(stencil, in.particles, p, in.lattice.flat_axis, dx, [&](const Neighbour& node) {
       double* to = arena + node.arena_place;
       to[0] += node.weight * m;

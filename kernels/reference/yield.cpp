@@ -62,12 +62,13 @@ struct Yielded {
   double plastic = 0.0, sheared = 0.0, dilated = 0.0;
 };
 
-Yielded yield(Eigen::Vector3d& strain, double cone, double cohesion, double dilatancy) {
+Yielded yield(Eigen::Vector3d& strain, double yield_slope, double cohesion, double dilatancy) {
   const Eigen::Vector3d before = strain, deviator = strain.array() - strain.sum() / 3.0;
   const double t = strain.sum(), n = deviator.norm();
-  const double apex = cone > 0.0 ? cohesion / cone : cohesion > 0.0 ? HUGE_VAL : 0.0;
-  if (n <= cohesion - cone * t && t <= apex) return {};
-  const double dg = std::clamp((n + cone * t - cohesion) / (1.0 + 3.0 * dilatancy * cone), 0.0, n);
+  const double apex = yield_slope > 0.0 ? cohesion / yield_slope : cohesion > 0.0 ? HUGE_VAL : 0.0;
+  if (n <= cohesion - yield_slope * t && t <= apex) return {};
+  const double dg =
+      std::clamp((n + yield_slope * t - cohesion) / (1.0 + 3.0 * dilatancy * yield_slope), 0.0, n);
   const Eigen::Vector3d flow = n > 0.0 ? Eigen::Vector3d(deviator / n) : Eigen::Vector3d::Zero();
   strain.array() -= dg * (flow.array() + dilatancy);
   const bool opened = strain.sum() > apex;
@@ -80,24 +81,24 @@ Yielded yield(Eigen::Vector3d& strain, double cone, double cohesion, double dila
 }  // namespace
 
 template <class Real>
-void harden(const Real* q, const HardeningConstants<Real>& law, Real* cone, std::size_t count) {
+void harden(const Real* q, const HardeningConstants<Real>& law, Real* yield_slope, std::size_t count) {
   for (std::size_t p = 0; p < count; ++p) {
     const double forgotten = std::exp(-double{law.h2} * q[p]);
     const double phi = law.h0 + (double{law.h1} * q[p] - law.h3) * forgotten;
-    cone[p] = static_cast<Real>(law.cone_over_slope * cone_slope(law.matching, phi));
+    yield_slope[p] = static_cast<Real>(law.per_cone_slope * cone_slope(law.matching, phi));
   }
 }
 
 template <class Real>
-void quicken(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
-             Real* cone, std::size_t count) {
+void strengthen(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
+                Real* yield_slope, std::size_t count) {
   for (std::size_t p = 0; p < count; ++p) {
     const Symmetric eps = load(strain, p);
-    const double t = trace(eps), over = norm_of_deviator(eps) - cohesion[p] + double{cone[p]} * t;
+    const double t = trace(eps), over = norm_of_deviator(eps) - cohesion[p] + double{yield_slope[p]} * t;
     if (!(t < 0.0 && over > 0.0)) continue;
     const double g = double{law.inertia} / dt / std::sqrt(-t);
     const double dg = shear_at_rest(over, -double{law.rise} * t, g, law.threshold);
-    cone[p] = static_cast<Real>(cone[p] + (over - dg) / -t);
+    yield_slope[p] = static_cast<Real>(yield_slope[p] + (over - dg) / -t);
   }
 }
 
@@ -119,11 +120,11 @@ void cut_tension(Real* const strain[6], const HenckyConstants<Real>& elastic, Re
 }
 
 template <class Real>
-void project_shaped_drucker_prager(const MaterialInput<Real>& in, const YieldInput<Real>& surface) {
+void return_map_per_particle_drucker_prager(const MaterialInput<Real>& in, const YieldInput<Real>& surface) {
   for (std::size_t p = 0; p < in.count; ++p) {
     Yielded done;
     const Symmetric projected = with_eigenvalues(load(in.strain, p), [&](Eigen::Vector3d& strain) {
-      done = yield(strain, surface.cone[p], surface.cohesion[p], surface.dilatancy[p]);
+      done = yield(strain, surface.yield_slope[p], surface.cohesion[p], surface.dilatancy[p]);
     });
     store(projected, in.strain, p);
     surface.plastic[p] = static_cast<Real>(done.plastic);
@@ -132,12 +133,12 @@ void project_shaped_drucker_prager(const MaterialInput<Real>& in, const YieldInp
   }
 }
 
-#define REPOSE_FOR(Real)                                                                             \
-  template void harden(const Real*, const HardeningConstants<Real>&, Real*, std::size_t);            \
-  template void quicken(const Real* const[6], const Real*, const RateConstants<Real>&, Real, Real*,  \
-                        std::size_t);                                                                \
-  template void cut_tension(Real* const[6], const HenckyConstants<Real>&, Real, Real*, std::size_t); \
-  template void project_shaped_drucker_prager(const MaterialInput<Real>&, const YieldInput<Real>&);
+#define REPOSE_FOR(Real)                                                                               \
+  template void harden(const Real*, const HardeningConstants<Real>&, Real*, std::size_t);              \
+  template void strengthen(const Real* const[6], const Real*, const RateConstants<Real>&, Real, Real*, \
+                           std::size_t);                                                               \
+  template void cut_tension(Real* const[6], const HenckyConstants<Real>&, Real, Real*, std::size_t);   \
+  template void return_map_per_particle_drucker_prager(const MaterialInput<Real>&, const YieldInput<Real>&);
 REPOSE_FOR(float)
 REPOSE_FOR(double)
 #undef REPOSE_FOR

@@ -3,22 +3,24 @@
 // solved where the kernels have closed forms. The yardstick of the kernels; inputs are those of the kernels.
 #pragma once
 
-#include "kernels/pass/pass.h"
+#include "kernels/effect/hardening.h"
+#include "kernels/effect/rate_friction.h"
+#include "kernels/pass/material_kernels.h"
 
 namespace repose::reference {
 
 /// As the kernels of these names.
 template <class Real>
-void harden(const Real* q, const HardeningConstants<Real>& law, Real* cone, std::size_t count);
+void harden(const Real* q, const HardeningConstants<Real>& law, Real* yield_slope, std::size_t count);
 template <class Real>
-void quicken(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
-             Real* cone, std::size_t count);
+void strengthen(const Real* const strain[6], const Real* cohesion, const RateConstants<Real>& law, Real dt,
+                Real* yield_slope, std::size_t count);
 template <class Real>
 void cut_tension(Real* const strain[6], const HenckyConstants<Real>& elastic, Real limit, Real* trace_of_trial,
                  std::size_t count);
 
-/// As project_shaped of DruckerPrager.
+/// As return_map_per_particle of DruckerPrager.
 template <class Real>
-void project_shaped_drucker_prager(const MaterialInput<Real>& in, const YieldInput<Real>& surface);
+void return_map_per_particle_drucker_prager(const MaterialInput<Real>& in, const YieldInput<Real>& surface);
 
 }  // namespace repose::reference

@@ -64,7 +64,7 @@ TEST_F(CommandRun, LogOfAFrame_HasEveryPromisedField) {
   EXPECT_EQ(frame["ledger"]["emitted"].asDouble(), 0.0);
   EXPECT_EQ(frame["ledger"]["removed"].asDouble(), 0.0);
   EXPECT_TRUE(frame["solver_iterations"].isInt());
-  for (const char* key : {"wall", "order", "scatter", "nodes", "inspect", "gather"}) {
+  for (const char* key : {"wall", "order", "scatter", "nodes", "acceptance", "gather"}) {
     EXPECT_TRUE(frame["seconds"][key].isDouble()) << key;
   }
   EXPECT_TRUE(frame["deepest"]["cells"].isDouble());

@@ -30,7 +30,7 @@ TEST_F(Command, Bench_WritesEveryFigure) {
   EXPECT_EQ(json["threads"], 2);
   EXPECT_NE(json["target"].asString(), "");
   double phases = 0.0;
-  for (const char* phase : {"order", "scatter", "nodes", "inspect", "gather"}) {
+  for (const char* phase : {"order", "scatter", "nodes", "acceptance", "gather"}) {
     ASSERT_TRUE(json["phases"][phase].isDouble()) << phase;
     phases += json["phases"][phase].asDouble();
   }

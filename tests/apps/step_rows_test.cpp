@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/repose/run_log.h"
-#include "engine/scene/reader.h"
+#include "engine/reading/reader.h"
 #include "tests/apps/command_probe.h"
 
 namespace repose {

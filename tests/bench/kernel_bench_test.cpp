@@ -39,8 +39,8 @@ Finished kernel_bench(const std::string& words, const std::string& before = "") 
 /// One kernel of every kind, in every precision and instruction set.
 constexpr const char* kSome =
     "--benchmark_filter='^(scatter/quadratic/mls_apic|gather/cubic/flip|interpolate/linear|trial/elastic|"
-    "project(_shaped)?/drucker_prager|stress/"
-    "elastic|harden|quicken|cut_tension|advance|inspect|open_volume|close_volume|add_arena/quadratic|"
+    "return_map(_per_particle)?/drucker_prager|stress/"
+    "elastic|harden|strengthen|cut_tension|advance|first_failed|open_volume|close_volume|add_arena/quadratic|"
     "load_arena/linear|normalize|accelerate|bound)/(float|double)/[a-z0-9]+/cache'";
 
 TEST(KernelBench, RightKernels_AreTimed) {
@@ -58,7 +58,7 @@ TEST(KernelBench, RightKernels_AreTimed) {
 
 TEST(KernelBench, WrongKernels_AreNotTimed) {
   for (const char* kernel :
-       {"scatter", "trial", "project_shaped", "inspect", "quicken", "add_arena", "bound"}) {
+       {"scatter", "trial", "return_map_per_particle", "first_failed", "strengthen", "add_arena", "bound"}) {
     const Finished finished = kernel_bench(kSome, std::string("REPOSE_BENCH_BREAK=") + kernel);
     EXPECT_EQ(finished.code, 1) << finished.text;
     std::istringstream lines(finished.text);

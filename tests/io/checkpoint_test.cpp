@@ -28,8 +28,8 @@ State<Real> make_state(bool filled) {
   state.spacing = 0.1;
   state.tallies.assign(3, 0.0);
   state.rest.on = true;
-  const std::vector<Index3> owners{{0, 0, 0}, {1, 0, 0}, {-3, 7, 2}, {250000, -250000, 1}, {0, 0, 1}};
-  if (filled) state.grid.build(owners, state.topology);
+  const std::vector<Index3> occupied_blocks{{0, 0, 0}, {1, 0, 0}, {-3, 7, 2}, {250000, -250000, 1}, {0, 0, 1}};
+  if (filled) state.grid.build(occupied_blocks, state.topology);
   for (int k = 0; k < 2; ++k) {
     ParticleSet<Real>& set = state.sets.emplace_back();
     set.name = k == 0 ? "first" : "second";
@@ -49,7 +49,7 @@ State<Real> make_state(bool filled) {
   }
   if (filled) {
     state.tallies = {0.25, -7.0, 1e300};
-    state.rest.resize(owners.size());
+    state.rest.resize(occupied_blocks.size());
     state.rest.asleep[2] = 1;
     state.rest.calm[3] = 0.25;
     state.rest.way[2] = {1e-3, -2e-5, 0.5};
@@ -142,10 +142,10 @@ TYPED_TEST(Checkpoint, SavedAndLoaded_IsTheSameBitForBit) {
   ASSERT_EQ(loaded.grid.size(), saved.grid.size());
   EXPECT_TRUE(
       std::equal(loaded.grid.blocks().begin(), loaded.grid.blocks().end(), saved.grid.blocks().begin()));
-  EXPECT_TRUE(
-      std::equal(loaded.grid.owners().begin(), loaded.grid.owners().end(), saved.grid.owners().begin()));
+  EXPECT_TRUE(std::equal(loaded.grid.occupied_blocks().begin(), loaded.grid.occupied_blocks().end(),
+                         saved.grid.occupied_blocks().begin()));
   EXPECT_EQ(state_hash(loaded), state_hash(saved));
-  EXPECT_EQ(loaded.rows_touched.size(), loaded.grid.owners().size());
+  EXPECT_EQ(loaded.rows_touched.size(), loaded.grid.occupied_blocks().size());
   EXPECT_EQ(loaded.nodes.values.size(), loaded.grid.size() * kBlockValues);
 }
 

@@ -135,7 +135,7 @@ TYPED_TEST(Conservation, ScatterNormalizeGather_KeepsMassMomentumAndSpin) {
       const Momenta momentum = momenta(blocks, transfer, false);
       expect_linear(momentum, before, kBound, what + ", on nodes");
       expect_angular(momentum, before, kBound, what + ", on nodes");
-      for (TypeParam* block : blocks.pointers) kernels<TypeParam>(target).normalize(block, TypeParam(0));
+      for (TypeParam* block : blocks.pointers) kernels<TypeParam>(target).node.normalize(block, TypeParam(0));
       expect_angular(momenta(blocks, transfer, true), before, kBound, what + ", normalized");
       to_particles(target, blocks, rows, transfer, particles);
       const Momenta after = momenta(particles, transfer, Part::kKept);
@@ -189,7 +189,7 @@ TYPED_TEST(Conservation, RigidTurn_IsReproducedByMatricesAndLostByPic) {
       const auto start = particles;
       NodeBlocks<TypeParam> blocks;
       const std::uint64_t rows = to_blocks(target, particles, transfer, blocks);
-      for (TypeParam* block : blocks.pointers) kernels<TypeParam>(target).normalize(block, TypeParam(0));
+      for (TypeParam* block : blocks.pointers) kernels<TypeParam>(target).node.normalize(block, TypeParam(0));
       to_particles(target, blocks, rows, transfer, particles);
       double turned = 0, most = 0;
       for (std::size_t p = 0; p < particles.count; ++p) {

@@ -12,7 +12,7 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 
-#include "kernels/base/matrix_function.h"
+#include "kernels/base/matrix_function-inl.h"
 #include "kernels/layout/stencil.h"
 #include "kernels/material/hencky.h"
 

@@ -2,6 +2,7 @@
 // every machine with either.
 #include <cstring>
 
+#include "kernels/effect/volume_correction.h"
 #include "tests/kernels/material_probe.h"
 #include "tests/kernels/node_blocks.h"
 #include "tests/kernels/tangent_samples.h"
@@ -133,7 +134,7 @@ void expect_same_material() {
   const Probe avx2(constants, Target::kAvx2), avx512(constants, Target::kAvx512);
   const auto trial = avx2.trial(strains, gradients, Real(0.5));
   EXPECT_TRUE(same_bits(trial, avx512.trial(strains, gradients, Real(0.5)))) << "trial";
-  EXPECT_TRUE(same_bits(avx2.project(trial), avx512.project(trial))) << "projection";
+  EXPECT_TRUE(same_bits(avx2.return_map(trial), avx512.return_map(trial))) << "projection";
   EXPECT_TRUE(same_bits(avx2.stress(trial), avx512.stress(trial))) << "stress";
 }
 
@@ -149,7 +150,7 @@ TYPED_TEST(InstructionSets, VolumeCorrection_SameBits) {
     std::vector<Particles<TypeParam>> particles(2, random_particles<TypeParam>(count, Order::kScattered, 1200));
     std::vector<TypeParam> gained[2], trace[2];
     for (int set = 0; set < 2; ++set) {
-      const Kernels<TypeParam>& table = kernels<TypeParam>(kBoth[set]);
+      const auto& table = volume_correction_kernels<TypeParam>(kBoth[set]);
       gained[set].assign(particles[set].position[0].begin(), particles[set].position[0].end());
       trace[set].assign(count, TypeParam(0));
       auto span = particles[set].span();
@@ -173,19 +174,20 @@ TYPED_TEST(InstructionSets, ShapesOfYielding_SameBits) {
     dilatancy[p] = static_cast<Real>(samples.uniform(0, 0.3));
   }
   const HenckyConstants<Real> elastic(golden_sand().elasticity);
-  std::vector<Real> cone[2], trace[2];
+  std::vector<Real> yield_slope[2], trace[2];
   std::vector<Symmetric<Real>> cut[2], projected[2];
   typename YieldProbe<Real>::Surface surface[2];
   for (int set = 0; set < 2; ++set) {
     const YieldProbe<Real> probe(kBoth[set]);
-    cone[set] = probe.harden(q, {Real(0.6), Real(0.16), Real(0.2), Real(0.17), {}, Real(3.25)});
-    cone[set] = probe.quicken(strains, cohesion, {Real(0.7), Real(0.3), Real(1e-4)}, Real(1e-4), cone[set]);
-    surface[set] = {cone[set], cohesion, dilatancy};
-    projected[set] = probe.project(strains, surface[set]);
+    yield_slope[set] = probe.harden(q, {Real(0.6), Real(0.16), Real(0.2), Real(0.17), {}, Real(3.25)});
+    yield_slope[set] =
+        probe.strengthen(strains, cohesion, {Real(0.7), Real(0.3), Real(1e-4)}, Real(1e-4), yield_slope[set]);
+    surface[set] = {yield_slope[set], cohesion, dilatancy};
+    projected[set] = probe.return_map(strains, surface[set]);
     trace[set] = q;
     cut[set] = probe.cut_tension(strains, elastic, Real(30), trace[set]);
   }
-  EXPECT_TRUE(same_bits(cone[0], cone[1]) && same_bits(projected[0], projected[1]));
+  EXPECT_TRUE(same_bits(yield_slope[0], yield_slope[1]) && same_bits(projected[0], projected[1]));
   EXPECT_TRUE(same_bits(surface[0].plastic, surface[1].plastic));
   EXPECT_TRUE(same_bits(surface[0].sheared, surface[1].sheared));
   EXPECT_TRUE(same_bits(surface[0].dilated, surface[1].dilated));
@@ -196,18 +198,18 @@ TYPED_TEST(InstructionSets, AdvanceAndInspect_SameBits) {
   for (const std::size_t count : kCounts) {
     std::vector<Particles<TypeParam>> particles(2, random_particles<TypeParam>(count, Order::kScattered, 1300));
     Motion<TypeParam> motion[2];
-    std::size_t inspected[2];
+    std::size_t failed[2];
     for (int set = 0; set < 2; ++set) {
       const Kernels<TypeParam>& table = kernels<TypeParam>(kBoth[set]);
       auto span = particles[set].span();
       const TypeParam* velocity[3] = {span.velocity[0], span.velocity[1], span.velocity[2]};
       const TypeParam* gradient[9];
       std::copy_n(span.affine, 9, gradient);
-      table.advance(span, velocity, gradient, TypeParam(0.3), motion[set]);
-      inspected[set] = table.inspect(velocity, gradient, count, TypeParam(0.008), TypeParam(0.01));
+      table.particle.advance(span, velocity, gradient, TypeParam(0.3), motion[set]);
+      failed[set] = table.particle.first_failed(velocity, gradient, count, TypeParam(0.008), TypeParam(0.01));
     }
     EXPECT_EQ(std::memcmp(&motion[0], &motion[1], sizeof(motion[0])), 0) << count;
-    EXPECT_EQ(inspected[0], inspected[1]) << count;
+    EXPECT_EQ(failed[0], failed[1]) << count;
     expect_same(particles[0].position, particles[1].position, "position");
   }
 }
@@ -224,9 +226,9 @@ TYPED_TEST(InstructionSets, NormalizeAccelerateBound_SameBits) {
   VelocityBounds<TypeParam> bounds[2];
   for (int set = 0; set < 2; ++set) {
     const Kernels<TypeParam>& table = kernels<TypeParam>(kBoth[set]);
-    active[set] = table.normalize(block[set].data(), TypeParam(0.25));
-    table.accelerate(block[set].data(), change);
-    table.bound(block[set].data(), bounds[set]);
+    active[set] = table.node.normalize(block[set].data(), TypeParam(0.25));
+    table.node.accelerate(block[set].data(), change);
+    table.node.bound(block[set].data(), bounds[set]);
   }
   EXPECT_EQ(active[0], active[1]);
   EXPECT_TRUE(same_bits(block[0], block[1]));

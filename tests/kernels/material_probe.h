@@ -17,7 +17,7 @@
 namespace repose {
 
 using HWY_NAMESPACE::DruckerPrager;
-using HWY_NAMESPACE::HenckyElastic;
+using HWY_NAMESPACE::Hencky;
 using HWY_NAMESPACE::Materials;
 using HWY_NAMESPACE::NeoHookean;
 
@@ -46,31 +46,65 @@ class MaterialProbe {
 
   const char* name() const { return target_ ? target_name(*target_) : "scalar"; }
 
+  /// What the law keeps of each particle, a vector for each channel.
+  using Own = std::array<std::vector<Real>, HWY_NAMESPACE::kOwn<Material>>;
+  static Own initial_own(std::size_t count) {
+    Own own;
+    const auto values = typename Material::Parameters{}.initial_channels();
+    for (std::size_t k = 0; k < own.size(); ++k) own[k].assign(count, static_cast<Real>(values[k]));
+    return own;
+  }
+
   Strains trial(const Strains& strains, const std::vector<Gradient<Real>>& gradients, Real dt) const {
-    if (target_) return through_kernel(kernel().trial, strains, gradients, dt, false);
+    Own own = initial_own(strains.size());
+    if (target_) return through_kernel(kernel().trial, strains, own, gradients, dt, false);
     Strains out = strains;
     for (std::size_t p = 0; p < out.size(); ++p) {
       HWY_NAMESPACE::Mat3<Real> step;
       for (int k = 0; k < 9; ++k) step.m[k / 3][k % 3] = dt * gradients[p][k];
-      out[p] = packed(HWY_NAMESPACE::hencky_trial(unpacked(strains[p]), step));
+      if constexpr (HWY_NAMESPACE::HasOwnTrial<Material>) {
+        auto numbers = own_of(own, p);
+        out[p] = packed(Material::trial(constants_, unpacked(strains[p]), numbers.number, step));
+      } else {
+        out[p] = packed(HWY_NAMESPACE::hencky_trial(unpacked(strains[p]), step));
+      }
     }
     return out;
   }
 
   /// Of an elastic material, the strains themselves.
-  Strains project(const Strains& strains) const {
+  Strains return_map(const Strains& strains) const {
+    Own own = initial_own(strains.size());
+    return return_map(strains, own);
+  }
+  Strains return_map(const Strains& strains, [[maybe_unused]] Own& own) const {
     Strains out = strains;
     if constexpr (Material::Parameters::kYields) {
-      if (target_) return through_kernel(kernel().project, strains, {}, 0, false);
-      for (auto& strain : out) strain = packed(Material::project(constants_, unpacked(strain)));
+      if (target_) return through_kernel(kernel().return_map, strains, own, {}, 0, false);
+      for (std::size_t p = 0; p < out.size(); ++p) {
+        if constexpr (HWY_NAMESPACE::kOwn<Material> == 0) {
+          out[p] = packed(Material::return_map(constants_, unpacked(strains[p])));
+        } else {
+          auto numbers = own_of(own, p);
+          out[p] = packed(Material::return_map(constants_, unpacked(strains[p]), numbers.number));
+          for (std::size_t k = 0; k < own.size(); ++k) own[k][p] = numbers.number[k];
+        }
+      }
     }
     return out;
   }
 
   Strains stress(const Strains& strains) const {
-    if (target_) return through_kernel(kernel().stress, strains, {}, 0, true);
+    Own own = initial_own(strains.size());
+    if (target_) return through_kernel(kernel().stress, strains, own, {}, 0, true);
     Strains out = strains;
-    for (auto& strain : out) strain = packed(Material::stress(constants_, unpacked(strain)));
+    for (std::size_t p = 0; p < out.size(); ++p) {
+      if constexpr (HWY_NAMESPACE::kOwn<Material> == 0) {
+        out[p] = packed(Material::stress(constants_, unpacked(strains[p])));
+      } else {
+        out[p] = packed(Material::stress(constants_, unpacked(strains[p]), own_of(own, p).number));
+      }
+    }
     return out;
   }
 
@@ -88,11 +122,17 @@ class MaterialProbe {
     return {a.xx, a.xy, a.xz, a.yy, a.yz, a.zz};
   }
 
-  Strains through_kernel(Pass pass, const Strains& strains, const std::vector<Gradient<Real>>& gradients,
-                         Real dt, bool want_stress) const {
+  static HWY_NAMESPACE::OwnChannels<Material, Real> own_of(const Own& own, std::size_t p) {
+    HWY_NAMESPACE::OwnChannels<Material, Real> numbers;
+    for (std::size_t k = 0; k < own.size(); ++k) numbers.number[k] = own[k][p];
+    return numbers;
+  }
+
+  Strains through_kernel(Pass pass, const Strains& strains, Own& own,
+                         const std::vector<Gradient<Real>>& gradients, Real dt, bool want_stress) const {
     const std::size_t count = strains.size();
     std::vector<Real> strain[6], stress[6], gradient[9];
-    MaterialInput<Real> in{&constants_, {}, {}, {}, dt, count};
+    MaterialInput<Real> in{&constants_, {}, {}, {}, {}, dt, count};
     for (int k = 0; k < 6; ++k) {
       for (const auto& s : strains) strain[k].push_back(s[k]);
       strain[k].push_back(kCanary<Real>);
@@ -104,7 +144,15 @@ class MaterialProbe {
       for (const auto& g : gradients) gradient[k].push_back(g[k]);
       in.gradient[k] = gradient[k].data();
     }
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      own[k].push_back(kCanary<Real>);
+      in.own[k] = own[k].data();
+    }
     pass(in);
+    for (auto& channel : own) {
+      EXPECT_EQ(channel.back(), kCanary<Real>) << name() << " writes beyond the law's channels";
+      channel.pop_back();
+    }
     Strains out(count);
     for (int k = 0; k < 6; ++k) {
       EXPECT_EQ(strain[k][count], kCanary<Real>) << name() << " writes beyond the strains";

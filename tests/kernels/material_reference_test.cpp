@@ -65,7 +65,7 @@ TYPED_TEST(MaterialReference, Trial_StrainsAndStepsOfAllSizes_Agrees) {
   const auto expected =
       through(nullptr, strains, gradients, false, [](const auto& in) { reference::trial<TypeParam>(in); });
   // b of a strain of 1 spans a factor of e^4, which the least strain pays for.
-  for (const auto& probe : default_probes<HenckyElastic, TypeParam>()) {
+  for (const auto& probe : default_probes<Hencky, TypeParam>()) {
     expect_near(probe.trial(strains, gradients, TypeParam(0.125)), expected, 50 * kTolerance<TypeParam>,
                 probe.name());
   }
@@ -75,9 +75,9 @@ TYPED_TEST(MaterialReference, DruckerPragerProjection_StrainsOfAllSizes_Agrees) 
   const auto strains = strains_of_all_sizes<TypeParam>(kCount, 1e-6, 87);
   const DruckerPragerConstants<TypeParam> constants(golden_sand());
   const auto expected = through(&constants, strains, std::vector<Gradient<TypeParam>>(kCount), false,
-                                [](const auto& in) { reference::project_drucker_prager<TypeParam>(in); });
+                                [](const auto& in) { reference::return_map_drucker_prager<TypeParam>(in); });
   for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    expect_near(probe.project(strains), expected, kTolerance<TypeParam>, probe.name());
+    expect_near(probe.return_map(strains), expected, kTolerance<TypeParam>, probe.name());
   }
 }
 
@@ -91,7 +91,7 @@ TYPED_TEST(MaterialReference, Stress_OfSandAndSolid_Agrees) {
   }
   HenckyParameters solid;
   solid.elasticity = golden_sand().elasticity;
-  for (const auto& probe : probes<HenckyElastic, TypeParam>(solid)) {
+  for (const auto& probe : probes<Hencky, TypeParam>(solid)) {
     expect_near(probe.stress(strains), expected, 1e6 * kTolerance<TypeParam>, probe.name());
   }
 }

@@ -64,7 +64,7 @@ TYPED_TEST(NeoHookeanGolden, Stress_HalfTheSize_AsByHand) {
 TEST(NeoHookean, Stress_SmallStrain_IsHenckyAndItsSquare) {
   HenckyParameters solid;
   solid.elasticity = unit().elasticity;
-  const auto hencky = probes<HenckyElastic, double>(solid)[0];
+  const auto hencky = probes<Hencky, double>(solid)[0];
   for (const auto& probe : probes<NeoHookean, double>(unit())) {
     for (const double size : {1e-3, 1e-5}) {
       Samples samples(91);

@@ -40,7 +40,7 @@ std::array<Real, 3> force_on(const TransferCase& transfer, Target target, Partic
     push.matrix[k] = matrix[k].data();
   }
   kernel.gradient(gather, unit.data());
-  kernels<Real>(target).apply_tangent(tangent.data(), change, moved, kCount);
+  kernels<Real>(target).tangent.apply(tangent.data(), change, moved, kCount);
   std::uint64_t rows = 0;
   kernel.push(push, answer.data(), rows);
   return {answer[node + 1], answer[node + 2], answer[node + 3]};

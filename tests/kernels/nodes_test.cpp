@@ -35,7 +35,7 @@ TYPED_TEST(Nodes, Normalize_RandomBlock_DividesAndNamesTheActive) {
   for (const Target target : supported_targets()) {
     const auto before = random_block<TypeParam>(500);
     auto block = before;
-    const std::uint64_t active = kernels<TypeParam>(target).normalize(block.data(), TypeParam(0));
+    const std::uint64_t active = kernels<TypeParam>(target).node.normalize(block.data(), TypeParam(0));
     for (int node = 0; node < kBlockNodes; ++node) {
       const TypeParam *from = &before[node * kNodeValues], *to = &block[node * kNodeValues];
       EXPECT_EQ((active >> node & 1) != 0, from[0] > 0) << target_name(target) << ", node " << node;
@@ -64,7 +64,7 @@ TYPED_TEST(Nodes, Normalize_NodesNotAboveTheLeastMass_BecomeEmpty) {
         Block<TypeParam> block(kBlockValues, TypeParam(0));
         const TypeParam values[] = {mass, TypeParam(1), TypeParam(-2), TypeParam(3)};
         std::copy_n(values, kNodeValues, &block[node * kNodeValues]);
-        const std::uint64_t active = kernels<TypeParam>(target).normalize(block.data(), kLeast);
+        const std::uint64_t active = kernels<TypeParam>(target).node.normalize(block.data(), kLeast);
         const bool kept = mass > kLeast;
         ASSERT_EQ(active, kept ? std::uint64_t{1} << node : 0) << target_name(target) << ", mass " << mass;
         for (int k = 0; k < kNodeValues; ++k) {
@@ -81,7 +81,7 @@ TYPED_TEST(Nodes, Accelerate_RandomBlock_ChangesNodesWithMassOnly) {
   for (const Target target : supported_targets()) {
     const auto before = random_block<TypeParam>(510);
     auto block = before;
-    kernels<TypeParam>(target).accelerate(block.data(), change);
+    kernels<TypeParam>(target).node.accelerate(block.data(), change);
     for (int node = 0; node < kBlockNodes; ++node) {
       const TypeParam *from = &before[node * kNodeValues], *to = &block[node * kNodeValues];
       EXPECT_EQ(to[0], from[0]) << target_name(target);
@@ -113,7 +113,7 @@ TYPED_TEST(Nodes, Bound_RandomBlock_IsTheRangeOfActiveNodes) {
         }
       }
       VelocityBounds<TypeParam> bounds{};
-      kernels<TypeParam>(target).bound(block.data(), bounds);
+      kernels<TypeParam>(target).node.bound(block.data(), bounds);
       EXPECT_TRUE(bounds.finite) << target_name(target);
       EXPECT_FALSE(bounds.empty) << target_name(target);
       for (int k = 0; k < 3; ++k) {
@@ -128,13 +128,13 @@ TYPED_TEST(Nodes, Bound_EmptyOrOneNode_SaysSo) {
   for (const Target target : supported_targets()) {
     Block<TypeParam> block(kBlockValues, TypeParam(0));
     VelocityBounds<TypeParam> bounds{};
-    kernels<TypeParam>(target).bound(block.data(), bounds);
+    kernels<TypeParam>(target).node.bound(block.data(), bounds);
     EXPECT_TRUE(bounds.empty && bounds.finite) << target_name(target);
     for (int node = 0; node < kBlockNodes; ++node) {
       std::fill(block.begin(), block.end(), TypeParam(0));
       block[node * kNodeValues] = TypeParam(1);
       block[node * kNodeValues + 2] = TypeParam(-4);
-      kernels<TypeParam>(target).bound(block.data(), bounds);
+      kernels<TypeParam>(target).node.bound(block.data(), bounds);
       EXPECT_TRUE(!bounds.empty && bounds.finite) << target_name(target);
       EXPECT_EQ(bounds.low[1], TypeParam(-4)) << target_name(target);
       EXPECT_EQ(bounds.high[1], TypeParam(-4)) << target_name(target);
@@ -151,7 +151,7 @@ TYPED_TEST(Nodes, Bound_NanOrInfinityAnywhere_IsNotFinite) {
         Block<TypeParam> block(kBlockValues, TypeParam(1));
         block[place] = bad;
         VelocityBounds<TypeParam> bounds{};
-        kernels<TypeParam>(target).bound(block.data(), bounds);
+        kernels<TypeParam>(target).node.bound(block.data(), bounds);
         EXPECT_FALSE(bounds.finite) << target_name(target) << ", value " << place << " is " << bad;
       }
     }

@@ -26,7 +26,7 @@ Moved<Real> advance(Target target, const Particles<Real>& before, Particles<Real
   const Real* velocity[3] = {bar.velocity[0].data(), bar.velocity[1].data(), bar.velocity[2].data()};
   const Real* gradient[kAffineComponents];
   for (int k = 0; k < kAffineComponents; ++k) gradient[k] = bar.affine[k].data();
-  kernels<Real>(target).advance(moved.particles.span(), velocity, gradient, scale, moved.motion);
+  kernels<Real>(target).particle.advance(moved.particles.span(), velocity, gradient, scale, moved.motion);
   EXPECT_TRUE(moved.particles.canaries_alive() && bar.canaries_alive()) << target_name(target);
   return moved;
 }

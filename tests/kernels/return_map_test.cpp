@@ -49,7 +49,7 @@ TYPED_TEST(ReturnMap, Project_StretchesOneDecade_OnTheConeAndIdempotent) {
   const auto strains = random_strains<TypeParam>(20011, 1.0, 51);
   const DruckerPragerParameters sand = golden_sand();
   for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-    const auto once = probe.project(strains), twice = probe.project(once);
+    const auto once = probe.return_map(strains), twice = probe.return_map(once);
     double overshoot = 0, change = 0;
     for (std::size_t k = 0; k < strains.size(); ++k) {
       const Invariants after = invariants(once[k]);
@@ -68,7 +68,7 @@ TYPED_TEST(ReturnMap, Project_StretchesSixDecades_FiniteAndCloseToTheCone) {
   const auto strains = random_strains<TypeParam>(20011, 6.0, 52);
   const double bound = sizeof(TypeParam) == 4 ? 1e-4 : 1e-7;
   for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    const auto once = probe.project(strains);
+    const auto once = probe.return_map(strains);
     for (const auto& strain : once) {
       const Invariants after = invariants(strain);
       ASSERT_LE(static_cast<double>(after.deviator + cone(golden_sand()) * after.trace), bound) << probe.name();
@@ -82,7 +82,7 @@ TYPED_TEST(ReturnMap, Project_AnyStrain_KeepsTheTraceOrOpens) {
   const double eps = std::numeric_limits<TypeParam>::epsilon();
   for (const DruckerPragerParameters& sand : sands()) {
     for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      const auto once = probe.project(strains);
+      const auto once = probe.return_map(strains);
       for (std::size_t k = 0; k < strains.size(); ++k) {
         const double before = static_cast<double>(invariants(strains[k]).trace);
         const double after = static_cast<double>(invariants(once[k]).trace);
@@ -104,7 +104,7 @@ TEST(ReturnMapVolume, Project_StrainsOfSand_KeepTheTraceTo1em15) {
     for (double& entry : strain) entry *= 0.05;
   }
   for (const auto& probe : probes<DruckerPrager, double>(golden_sand())) {
-    const auto once = probe.project(strains);
+    const auto once = probe.return_map(strains);
     for (std::size_t k = 0; k < strains.size(); ++k) {
       const double before = static_cast<double>(invariants(strains[k]).trace);
       if (before >= 0) continue;
@@ -118,7 +118,7 @@ TYPED_TEST(ReturnMap, Project_AnyStrain_PlasticWorkIsNotNegative) {
   const auto strains = strains_of_all_sizes<TypeParam>(20011, 1e-6, 55);
   for (const DruckerPragerParameters& sand : sands()) {
     for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      const auto once = probe.project(strains), stress = probe.stress(once);
+      const auto once = probe.return_map(strains), stress = probe.stress(once);
       for (std::size_t k = 0; k < strains.size(); ++k) {
         const ExactMatrix tau = exact(stress[k]);
         const ExactMatrix flow = exact(strains[k]) - exact(once[k]);
@@ -147,7 +147,7 @@ TYPED_TEST(ReturnMap, Project_AtTheTip_IsContinuous) {
   }
   const double stiffness = golden_sand().elasticity.youngs_modulus;
   for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    for (const auto& stress : probe.stress(probe.project(strains))) {
+    for (const auto& stress : probe.stress(probe.return_map(strains))) {
       EXPECT_LE(largest_entry(exact(stress)), (sizeof(TypeParam) == 4 ? 1e-5 : 1e-14) * stiffness)
           << probe.name();
     }
@@ -159,7 +159,7 @@ TYPED_TEST(ReturnMap, Project_AnyStrain_CarriesNoTension) {
   const auto strains = strains_of_all_sizes<TypeParam>(20011, 1e-9, 57);
   for (const DruckerPragerParameters& sand : sands()) {
     for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      for (const auto& strain : probe.project(strains)) {
+      for (const auto& strain : probe.return_map(strains)) {
         ASSERT_LE(invariants(strain).trace,
                   4 * std::numeric_limits<TypeParam>::epsilon() * largest_entry(exact(strain)))
             << probe.name();
@@ -175,7 +175,7 @@ TYPED_TEST(ReturnMap, Project_NearlyIncompressible_IsFinite) {
     sand.friction_angle = angle;
     sand.elasticity.poisson_ratio = 0.4999;
     for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      for (const auto& stress : probe.stress(probe.project(strains))) {
+      for (const auto& stress : probe.stress(probe.return_map(strains))) {
         for (const TypeParam entry : stress) ASSERT_TRUE(std::isfinite(entry)) << probe.name();
       }
     }

@@ -33,7 +33,7 @@ class Stiffness {
   std::vector<std::array<double, 6>> strain;
   UnilateralConstants<double> unilateral{-0.02, 0.03, 0.5};
   /// Numbers of the yield surface; empty: those of the material.
-  std::vector<double> cone, cohesion, dilatancy;
+  std::vector<double> yield_slope, cohesion, dilatancy;
 
   /// S of the steps' gradients G.
   Matrices stress(const Matrices& g) const {
@@ -41,17 +41,17 @@ class Stiffness {
     MaterialInput<double> in = a.input(constants_.get());
     material_.trial(in);
     const bool returns = mode_ == TangentMode::kExact || mode_ == TangentMode::kProjected;
-    if (material_.project != nullptr && returns) {
-      cone.empty() ? material_.project(in) : material_.project_shaped(in, surface(a));
+    if (material_.return_map != nullptr && returns) {
+      yield_slope.empty() ? material_.return_map(in) : material_.return_map_per_particle(in, surface(a));
     }
-    if (material_.fading_stress != nullptr && mode_ == TangentMode::kUnilateral) {
-      material_.fading_stress(in, unilateral);
+    if (material_.unilateral_stress != nullptr && mode_ == TangentMode::kUnilateral) {
+      material_.unilateral_stress(in, unilateral);
     } else {
       material_.stress(in);
     }
     double* matrix[9];
     for (int k = 0; k < 9; ++k) matrix[k] = a.matrix[k].data();
-    kernels_.turn(in.stress, in.gradient, 1.0, matrix, kCount);
+    kernels_.tangent.pull_back(in.stress, in.gradient, 1.0, matrix, kCount);
     return a.matrices();
   }
 
@@ -62,14 +62,14 @@ class Stiffness {
     material_.trial(in);
     std::vector<double> tangent((kCount + kTangentGroup) * kTangentValues, 1e300);
     material_.linearize[static_cast<int>(mode_)](
-        {in, cone.empty() ? YieldInput<double>{} : surface(at), unilateral, tangent.data()});
+        {in, yield_slope.empty() ? YieldInput<double>{} : surface(at), unilateral, tangent.data()});
     double* matrix[9];
     const double* gradient[9];
     for (int k = 0; k < 9; ++k) {
       matrix[k] = by.matrix[k].data();
       gradient[k] = by.gradient[k].data();
     }
-    kernels_.apply_tangent(tangent.data(), gradient, matrix, kCount);
+    kernels_.tangent.apply(tangent.data(), gradient, matrix, kCount);
     return by.matrices();
   }
 
@@ -111,8 +111,8 @@ class Stiffness {
     }
   };
   YieldInput<double> surface(Arrays& a) const {
-    return {cone.data(),    cohesion.data(),         dilatancy.data(),
-            a.spare.data(), a.spare.data() + kCount, a.spare.data() + 2 * kCount};
+    return {yield_slope.data(), cohesion.data(),         dilatancy.data(),
+            a.spare.data(),     a.spare.data() + kCount, a.spare.data() + 2 * kCount};
   }
 
   const Kernels<double>& kernels_;
@@ -148,15 +148,15 @@ struct Trial {
   const char* name;
   MaterialParameters material;
   TangentMode mode;
-  bool shaped;
+  bool per_particle;
 };
 
 std::vector<Trial> trials() {
   const DruckerPragerParameters sand;
   return {{"sand exact", sand, TangentMode::kExact, false},
-          {"sand exact, shaped", sand, TangentMode::kExact, true},
+          {"sand exact, per particle", sand, TangentMode::kExact, true},
           {"sand projected", sand, TangentMode::kProjected, false},
-          {"sand projected, shaped", sand, TangentMode::kProjected, true},
+          {"sand projected, per particle", sand, TangentMode::kProjected, true},
           {"sand lagged", sand, TangentMode::kLagged, false},
           {"sand unilateral", sand, TangentMode::kUnilateral, false},
           {"elastic", HenckyParameters{}, TangentMode::kExact, false},
@@ -171,11 +171,11 @@ double modulus(const MaterialParameters& material) {
 Stiffness make(const Trial& trial, Target target, double size) {
   Stiffness stiffness(target, trial.material, trial.mode);
   stiffness.strain = random_strains(size, -0.6 * size, 5);
-  if (trial.shaped) {
+  if (trial.per_particle) {
     std::mt19937 engine(9);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     for (std::size_t p = 0; p < kCount; ++p) {
-      stiffness.cone.push_back(0.5 + uniform(engine));
+      stiffness.yield_slope.push_back(0.5 + uniform(engine));
       stiffness.cohesion.push_back(0.3 * size * uniform(engine));
       stiffness.dilatancy.push_back(0.3 * uniform(engine));
     }
@@ -239,7 +239,7 @@ TEST(Stiffness, IsTheDerivativeOfTheStress) {
 /// Of plain sand: -2 mu bc e/n tr(dL), on the axes of the trial state.
 TEST(Stiffness, Projected_LeavesOutOneTerm) {
   const DruckerPragerParameters sand;
-  const double mu = sand.elasticity.mu(), cone = sand.cone_of_slope(sand.cone_slope());
+  const double mu = sand.elasticity.mu(), yield_slope = sand.yield_slope();
   const auto g = random_matrices(0.02, 3), dg = random_matrices(1.0, 77);
   const Stiffness exact = make({"", sand, TangentMode::kExact, false}, best_target(), 0.1),
                   projected = make({"", sand, TangentMode::kProjected, false}, best_target(), 0.1);
@@ -256,11 +256,11 @@ TEST(Stiffness, Projected_LeavesOutOneTerm) {
     const Eigen::Vector3d trial = 0.5 * after.eigenvalues().array().log();
     const double t = trial.sum();
     const Eigen::Vector3d e = trial.array() - t / 3.0;
-    const bool yields = t < 0.0 && e.norm() + cone * t > 0.0;
+    const bool yields = t < 0.0 && e.norm() + yield_slope * t > 0.0;
     Mat3d missing = Mat3d::Zero();
     if (yields) {
       const double opens = (dg[p] * step.inverse()).trace();
-      const Mat3d tau = after.eigenvectors() * (-2.0 * mu * cone * opens * e / e.norm()).asDiagonal() *
+      const Mat3d tau = after.eigenvectors() * (-2.0 * mu * yield_slope * opens * e / e.norm()).asDiagonal() *
                         after.eigenvectors().transpose();
       missing = tau * step.inverse().transpose();
       ++yielding;

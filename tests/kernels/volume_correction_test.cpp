@@ -1,5 +1,6 @@
 // Repose tests: the volume that sand gains where it opens is given back when it closes (Tampubolon et al.
 // 2017): the numbers of two worked steps, and the invariant tr H + vc' = tr eps + vc of every step.
+#include "kernels/effect/volume_correction.h"
 #include "tests/kernels/material_probe.h"
 
 namespace repose {
@@ -14,19 +15,19 @@ TYPED_TEST_SUITE(VolumeCorrection, Precisions);
 template <class Real>
 void correct(Target target, std::vector<Symmetric<Real>>& strains, std::vector<Real>& gained) {
   const DruckerPragerConstants<Real> constants(golden_sand());
-  const Kernels<Real>& table = kernels<Real>(target);
+  const VolumeCorrectionKernels<Real>& volume = volume_correction_kernels<Real>(target);
   const std::size_t count = strains.size();
   std::vector<Real> channel[6], trace(count + 1, kCanary<Real>);
-  MaterialInput<Real> in{&constants, {}, {}, {}, 0, count};
+  MaterialInput<Real> in{&constants, {}, {}, {}, {}, 0, count};
   for (int k = 0; k < 6; ++k) {
     for (const auto& strain : strains) channel[k].push_back(strain[k]);
     channel[k].push_back(kCanary<Real>);
     in.strain[k] = channel[k].data();
   }
   gained.push_back(kCanary<Real>);
-  table.open_volume(in.strain, gained.data(), trace.data(), count);
-  table.material[material_index<DruckerPrager>()].project(in);
-  table.close_volume(in.strain, gained.data(), trace.data(), count);
+  volume.open_volume(in.strain, gained.data(), trace.data(), count);
+  kernels<Real>(target).material[material_index<DruckerPrager>()].return_map(in);
+  volume.close_volume(in.strain, gained.data(), trace.data(), count);
   for (int k = 0; k < 6; ++k) {
     EXPECT_EQ(channel[k][count], kCanary<Real>) << target_name(target);
     for (std::size_t p = 0; p < count; ++p) strains[p][k] = channel[k][p];

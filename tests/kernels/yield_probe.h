@@ -5,6 +5,9 @@
 
 #include <optional>
 
+#include "kernels/effect/cohesion.h"
+#include "kernels/effect/hardening.h"
+#include "kernels/effect/rate_friction.h"
 #include "kernels/reference/yield.h"
 #include "tests/kernels/material_probe.h"
 
@@ -21,28 +24,28 @@ class YieldProbe {
   const char* name() const { return target_ ? target_name(*target_) : "reference"; }
 
   Numbers harden(Numbers q, const HardeningConstants<Real>& law) const {
-    Numbers cone(q.size() + 1, kCanary<Real>);
-    const auto run = target_ ? kernels<Real>(*target_).harden : reference::harden<Real>;
-    run(q.data(), law, cone.data(), q.size());
-    return without_canary(cone);
+    Numbers yield_slope(q.size() + 1, kCanary<Real>);
+    const auto run = target_ ? hardening_kernels<Real>(*target_).harden : reference::harden<Real>;
+    run(q.data(), law, yield_slope.data(), q.size());
+    return without_canary(yield_slope);
   }
 
-  Numbers quicken(const Strains& strains, const Numbers& cohesion, const RateConstants<Real>& law, Real dt,
-                  Numbers cone) const {
+  Numbers strengthen(const Strains& strains, const Numbers& cohesion, const RateConstants<Real>& law, Real dt,
+                     Numbers yield_slope) const {
     Channels channels(strains);
     const Real* strain[6];
     std::copy_n(channels.pointers, 6, strain);
-    cone.push_back(kCanary<Real>);
-    const auto run = target_ ? kernels<Real>(*target_).quicken : reference::quicken<Real>;
-    run(strain, cohesion.data(), law, dt, cone.data(), strains.size());
-    return without_canary(cone);
+    yield_slope.push_back(kCanary<Real>);
+    const auto run = target_ ? rate_friction_kernels<Real>(*target_).strengthen : reference::strengthen<Real>;
+    run(strain, cohesion.data(), law, dt, yield_slope.data(), strains.size());
+    return without_canary(yield_slope);
   }
 
   Strains cut_tension(const Strains& strains, const HenckyConstants<Real>& elastic, Real limit,
                       Numbers& trace) const {
     Channels channels(strains);
     trace.push_back(kCanary<Real>);
-    const auto run = target_ ? kernels<Real>(*target_).cut_tension : reference::cut_tension<Real>;
+    const auto run = target_ ? cohesion_kernels<Real>(*target_).cut_tension : reference::cut_tension<Real>;
     run(channels.pointers, elastic, limit, trace.data(), strains.size());
     trace = without_canary(trace);
     return channels.strains();
@@ -50,20 +53,22 @@ class YieldProbe {
 
   /// The yield surface of each particle, and what yielding did.
   struct Surface {
-    Numbers cone, cohesion, dilatancy;
+    Numbers yield_slope, cohesion, dilatancy;
     Numbers plastic = {}, sheared = {}, dilated = {};
   };
-  Strains project(const Strains& strains, Surface& surface) const {
+  Strains return_map(const Strains& strains, Surface& surface) const {
     Channels channels(strains);
     MaterialInput<Real> in{};
     std::copy_n(channels.pointers, 6, in.strain);
     in.count = strains.size();
     Numbers* const results[] = {&surface.plastic, &surface.sheared, &surface.dilated};
     for (Numbers* result : results) result->assign(strains.size() + 1, kCanary<Real>);
-    const YieldInput<Real> numbers{surface.cone.data(),    surface.cohesion.data(), surface.dilatancy.data(),
-                                   surface.plastic.data(), surface.sheared.data(),  surface.dilated.data()};
-    const auto run = target_ ? kernels<Real>(*target_).material[material_index<DruckerPrager>()].project_shaped
-                             : reference::project_shaped_drucker_prager<Real>;
+    const YieldInput<Real> numbers{surface.yield_slope.data(), surface.cohesion.data(),
+                                   surface.dilatancy.data(),   surface.plastic.data(),
+                                   surface.sheared.data(),     surface.dilated.data()};
+    const auto run =
+        target_ ? kernels<Real>(*target_).material[material_index<DruckerPrager>()].return_map_per_particle
+                : reference::return_map_per_particle_drucker_prager<Real>;
     run(in, numbers);
     for (Numbers* result : results) *result = without_canary(*result);
     return channels.strains();

@@ -60,14 +60,14 @@ TYPED_TEST(YieldReference, Harden_EveryMatchingAndShear_Agrees) {
           Real(degrees[3] * kRadians), static_cast<ConeMatching>(matching), Real(3.25)};
       const auto expected = YieldProbe<Real>().harden(q, law);
       for (const auto& probe : yield_probes<Real>()) {
-        const auto cone = probe.harden(q, law);
+        const auto yield_slope = probe.harden(q, law);
         for (std::size_t p = 0; p < q.size(); ++p) {
           // h2 q itself is rounded, and so is 1 - exp(-h2 q), of which nothing is left beyond 40.
           const double gone = std::min(double{law.h2} * q[p], 40.0);
           const double angle = law.h0 + (law.h1 / law.h2 * gone + law.h3) * (1.0 + gone * std::exp(-gone));
           const double bound =
-              8 * this->kRounding * law.cone_over_slope * angle + std::numeric_limits<Real>::min();
-          ASSERT_NEAR(cone[p], expected[p], bound) << probe.name() << ", q " << q[p];
+              8 * this->kRounding * law.per_cone_slope * angle + std::numeric_limits<Real>::min();
+          ASSERT_NEAR(yield_slope[p], expected[p], bound) << probe.name() << ", q " << q[p];
         }
       }
     }
@@ -82,24 +82,24 @@ TYPED_TEST(YieldReference, Quicken_StrainsStepsAndLawsOfAllSizes_Agrees) {
   for (const double dt : {1e-7, 1e-4, 1e-2}) {
     for (const double inertia : {1e-6, 1e-4, 1e-1}) {
       const RateConstants<Real> law{Real(0.7), Real(0.279), Real(inertia)};
-      const auto expected = YieldProbe<Real>().quicken(strains, cohesion, law, Real(dt), before);
+      const auto expected = YieldProbe<Real>().strengthen(strains, cohesion, law, Real(dt), before);
       for (const auto& probe : yield_probes<Real>()) {
-        const auto cone = probe.quicken(strains, cohesion, law, Real(dt), before);
+        const auto yield_slope = probe.strengthen(strains, cohesion, law, Real(dt), before);
         std::size_t higher = 0;
-        for (std::size_t p = 0; p < cone.size(); ++p) {
+        for (std::size_t p = 0; p < yield_slope.size(); ++p) {
           const double pressed = std::fabs(static_cast<double>(exact(strains[p]).trace()));
           const double sum = 4 * this->size(strains[p]) + cohesion[p] + (before[p] + law.rise) * pressed;
           const double bound =
               8 * this->kRounding * (sum / pressed + before[p]) + 4 * this->vanishing() / pressed;
           if (pressed > 0.0) {
-            ASSERT_NEAR(cone[p], expected[p], bound) << probe.name() << ", particle " << p;
+            ASSERT_NEAR(yield_slope[p], expected[p], bound) << probe.name() << ", particle " << p;
           }
-          ASSERT_GE(cone[p], before[p]) << probe.name();
-          ASSERT_LE(cone[p], (before[p] + law.rise) * (1 + this->kRounding)) << probe.name();
-          higher += cone[p] > before[p] ? 1 : 0;
+          ASSERT_GE(yield_slope[p], before[p]) << probe.name();
+          ASSERT_LE(yield_slope[p], (before[p] + law.rise) * (1 + this->kRounding)) << probe.name();
+          higher += yield_slope[p] > before[p] ? 1 : 0;
         }
-        EXPECT_GT(higher, cone.size() / 20) << "few yield, so little is compared";
-        EXPECT_LT(higher, cone.size() / 2);
+        EXPECT_GT(higher, yield_slope.size() / 20) << "few yield, so little is compared";
+        EXPECT_LT(higher, yield_slope.size() / 2);
       }
     }
   }
@@ -135,13 +135,13 @@ TYPED_TEST(YieldReference, ShapedProjection_SurfacesOfAllKinds_Agrees) {
   using Real = TypeParam;
   const auto strains = strains_for_yielding<Real>(this->kCount, 410);
   auto expected = this->some_surface(strains.size());
-  const auto expected_strains = YieldProbe<Real>().project(strains, expected);
+  const auto expected_strains = YieldProbe<Real>().return_map(strains, expected);
   for (const auto& probe : yield_probes<Real>()) {
     auto surface = this->some_surface(strains.size());
-    const auto projected = probe.project(strains, surface);
+    const auto projected = probe.return_map(strains, surface);
     std::size_t at_the_tip = 0, yielding = 0;
     for (std::size_t p = 0; p < projected.size(); ++p) {
-      const double steep = (1.0 + surface.cone[p]) * (1.0 + 3.0 * surface.dilatancy[p]);
+      const double steep = (1.0 + surface.yield_slope[p]) * (1.0 + 3.0 * surface.dilatancy[p]);
       const double bound =
           steep * (this->kRoundings * (this->size(strains[p]) + surface.cohesion[p]) + 2 * this->vanishing());
       const auto where = [&] { return std::string(probe.name()) + ", particle " + std::to_string(p); };
@@ -168,14 +168,14 @@ TYPED_TEST(YieldReference, ShapedProjection_OfScalars_Agrees) {
   using Real = TypeParam;
   const auto strains = strains_for_yielding<Real>(this->kCount, 411);
   auto surface = this->some_surface(strains.size());
-  const auto expected = YieldProbe<Real>().project(strains, surface);
+  const auto expected = YieldProbe<Real>().return_map(strains, surface);
   for (std::size_t p = 0; p < strains.size(); ++p) {
     const auto& s = strains[p];
     const HWY_NAMESPACE::Sym3<Real> strain{s[0], s[1], s[2], s[3], s[4], s[5]};
-    const auto done =
-        DruckerPrager::project_shaped(strain, surface.cone[p], surface.cohesion[p], surface.dilatancy[p]);
+    const auto done = DruckerPrager::return_map_per_particle(strain, surface.yield_slope[p],
+                                                             surface.cohesion[p], surface.dilatancy[p]);
     const auto& h = done.strain;
-    const double steep = (1.0 + surface.cone[p]) * (1.0 + 3.0 * surface.dilatancy[p]);
+    const double steep = (1.0 + surface.yield_slope[p]) * (1.0 + 3.0 * surface.dilatancy[p]);
     const double bound =
         steep * (this->kRoundings * (this->size(s) + surface.cohesion[p]) + 2 * this->vanishing());
     const Symmetric<Real> got{h.xx, h.xy, h.xz, h.yy, h.yz, h.zz};
@@ -200,22 +200,23 @@ TYPED_TEST(YieldReference, NotANumber_StaysWhereItIs) {
       auto broken = strains;
       broken[at][k] = nan;
       auto surface = this->some_surface(64), surface_of_broken = surface;
-      std::vector<Real> trace(64), trace_of_broken(64), cone(64, Real(1));
+      std::vector<Real> trace(64), trace_of_broken(64), yield_slope(64, Real(1));
       const auto expect_lone = [&](const auto& of_broken, const auto& all, const char* what) {
         for (std::size_t p = 0; p < 64; ++p) {
           EXPECT_TRUE(p == at || of_broken[p] == all[p]) << what << ' ' << probe.name() << ' ' << p;
         }
       };
-      const auto projected = probe.project(broken, surface_of_broken);
+      const auto projected = probe.return_map(broken, surface_of_broken);
       EXPECT_TRUE(std::ranges::any_of(projected[at], is_nan)) << probe.name() << ' ' << k;
-      expect_lone(projected, probe.project(strains, surface), "projection");
+      expect_lone(projected, probe.return_map(strains, surface), "projection");
       const auto cut = probe.cut_tension(broken, elastic, Real(100), trace_of_broken);
       EXPECT_TRUE(std::ranges::any_of(cut[at], is_nan)) << probe.name() << ' ' << k;
       expect_lone(cut, probe.cut_tension(strains, elastic, Real(100), trace), "cut");
-      expect_lone(probe.quicken(broken, cohesion, rate, Real(1e-4), cone),
-                  probe.quicken(strains, cohesion, rate, Real(1e-4), cone), "rate");
-      cone[at] = nan;
-      EXPECT_TRUE(std::isnan(probe.quicken(strains, cohesion, rate, Real(1e-4), cone)[at])) << probe.name();
+      expect_lone(probe.strengthen(broken, cohesion, rate, Real(1e-4), yield_slope),
+                  probe.strengthen(strains, cohesion, rate, Real(1e-4), yield_slope), "rate");
+      yield_slope[at] = nan;
+      EXPECT_TRUE(std::isnan(probe.strengthen(strains, cohesion, rate, Real(1e-4), yield_slope)[at]))
+          << probe.name();
       std::vector<Real> q(64, Real(0.5)), q_of_broken = q;
       q_of_broken[at] = nan;
       const auto hard = probe.harden(q_of_broken, hardening);

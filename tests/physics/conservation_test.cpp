@@ -32,9 +32,8 @@ Drift drift(const std::vector<std::string>& overrides) {
   for (int k = 0; k < 15; ++k) {
     if (!run_steps(*simulation, 20)) break;
     const Diagnostics now = simulation->diagnose();
-    worst.momentum = std::max(worst.momentum, (now.momentum - start.momentum).norm() / start.momentum.norm());
-    worst.angular = std::max(
-        worst.angular, (now.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm());
+    worst.momentum = std::max(worst.momentum, change(start.momentum, now.momentum));
+    worst.angular = std::max(worst.angular, change(start.angular_momentum, now.angular_momentum));
     worst.energy_gain = std::max(worst.energy_gain, energy(now) / energy(start) - 1.0);
   }
   return worst;

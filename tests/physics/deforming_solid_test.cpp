@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/engine/mesh_files.h"
+#include "tests/engine/geometry/mesh_files.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/compiler.h"
+#include "engine/compiler/compiler.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {
@@ -95,9 +95,9 @@ class Element {
   /// Where it began and is, m: elements are strained, not moved.
   Vec3 position(std::size_t p) const {
     const auto& set = state_.sets[0];
-    std::size_t owner = 0;
-    while (set.begin[owner + 1] <= p) ++owner;
-    const Index3 block = state_.grid.coordinates_of_owner(owner);
+    std::size_t occupied = 0;
+    while (set.begin[occupied + 1] <= p) ++occupied;
+    const Index3 block = state_.grid.occupied_coordinates(occupied);
     return state_.world(block, {set.position[0][p], set.position[1][p], set.position[2][p]});
   }
   std::size_t count() const { return state_.sets[0].count; }

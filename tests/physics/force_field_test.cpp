@@ -26,14 +26,14 @@ Scene ball(const std::string& fields, std::vector<std::string> overrides = {}) {
 
 Vec3 velocity(Simulation& simulation) {
   const Diagnostics figures = simulation.diagnose();
-  return figures.momentum / figures.mass;
+  return to_vec3(figures.momentum) / figures.mass;
 }
 
 /// Position and velocity after n steps of the acceleration a, as the symplectic step sums them.
 void expect_falls(Simulation& simulation, const Vec3& start, const Vec3& a, double n) {
   const Vec3 v = n * kStep * a, way = 0.5 * n * (n + 1.0) * kStep * kStep * a;
   EXPECT_LT((velocity(simulation) - v).norm(), 1e-12 * v.norm());
-  EXPECT_LT((simulation.diagnose().center_of_mass - start - way).norm(), 1e-12 * way.norm());
+  EXPECT_LT((to_vec3(simulation.diagnose().center_of_mass) - start - way).norm(), 1e-12 * way.norm());
 }
 
 constexpr const char* kUniform = R"({"name": "pull", "type": "uniform", "acceleration": [1, -9.81, 2]})";
@@ -41,7 +41,7 @@ constexpr const char* kUniform = R"({"name": "pull", "type": "uniform", "acceler
 TEST(UniformField, FreeBody_FallsAsByGravity) {
   const auto field = simulate(ball(kUniform), 1);
   const auto gravity = simulate(ball("", {"gravity.acceleration=[1,-9.81,2]"}), 1);
-  const Vec3 start = field->diagnose().center_of_mass;
+  const Vec3 start = to_vec3(field->diagnose().center_of_mass);
   ASSERT_TRUE(run_steps(*field, 1000) && run_steps(*gravity, 1000));
   expect_falls(*field, start, Vec3(1, -9.81, 2), 1000);
   expect_falls(*gravity, start, Vec3(1, -9.81, 2), 1000);
@@ -59,7 +59,7 @@ TEST(UniformField, TwoFields_AddUp) {
   const auto field = simulate(
       ball(std::string(kUniform) + R"(, {"name": "push", "type": "uniform", "acceleration": [0, 9.81, 0]})"),
       1);
-  const Vec3 start = field->diagnose().center_of_mass;
+  const Vec3 start = to_vec3(field->diagnose().center_of_mass);
   ASSERT_TRUE(run_steps(*field, 300));
   expect_falls(*field, start, Vec3(1, 0, 2), 300);
 }
@@ -102,12 +102,12 @@ TEST(Wind, BodyAtRest_TakesOnItsVelocityAsTheExponentialSays) {
   for (const int steps_per_millisecond : {10, 5}) {
     const double dt = 1e-3 / steps_per_millisecond;
     const auto simulation = simulate(ball(wind(20.0), {"time.max_step=" + std::to_string(dt)}), 1);
-    const Vec3 start = simulation->diagnose().center_of_mass;
+    const Vec3 start = to_vec3(simulation->diagnose().center_of_mass);
     ASSERT_TRUE(run_steps(*simulation, 50 * steps_per_millisecond));  // 0.05 s, as long as it takes to 1 - 1/e
     const double reached = 1.0 - std::exp(-1.0), way = 0.05 - reached / 20.0;
     EXPECT_LT((velocity(*simulation) - reached * kAir).norm(), 1e-12 * kAir.norm()) << "at any step";
     // Places are summed with the velocity of each step's end: ahead of the law by half a step.
-    const Vec3 ahead = simulation->diagnose().center_of_mass - start - way * kAir;
+    const Vec3 ahead = to_vec3(simulation->diagnose().center_of_mass) - start - way * kAir;
     report("ahead_in_steps", ahead.norm() / (reached * kAir.norm() * dt));
     EXPECT_LT((ahead - 0.5 * dt * reached * kAir).norm(), 0.01 * dt * kAir.norm());
   }

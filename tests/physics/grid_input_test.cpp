@@ -1,8 +1,8 @@
 // Repose tests: sand whose friction comes from a VDB file.
 #include <gtest/gtest.h>
 
-#include "tests/engine/grid_writer.h"
-#include "tests/engine/mesh_files.h"
+#include "tests/engine/geometry/grid_writer.h"
+#include "tests/engine/geometry/mesh_files.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {

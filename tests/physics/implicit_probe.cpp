@@ -8,7 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/scene/compiler.h"
+#include "engine/compiler/compiler.h"
+#include "engine/simulation/diagnostics.h"
 #include "engine/step/stepper.h"
 
 namespace repose {

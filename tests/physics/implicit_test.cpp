@@ -9,7 +9,7 @@
 #include <limits>
 #include <set>
 
-#include "engine/scene/compiler.h"
+#include "engine/compiler/compiler.h"
 #include "engine/step/stepper.h"
 #include "tests/file_bytes.h"
 #include "tests/physics/physics_probe.h"

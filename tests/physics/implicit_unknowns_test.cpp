@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/scene/compiler.h"
+#include "engine/compiler/compiler.h"
 #include "engine/step/stepper.h"
 #include "tests/physics/implicit_probe.h"
 

@@ -43,15 +43,15 @@ struct Slide {
 
 Slide slide(const Scene& scene, const Vec3& downhill) {
   const auto simulation = simulate(scene);
-  const double start = simulation->diagnose().center_of_mass.dot(downhill);
+  const double start = to_vec3(simulation->diagnose().center_of_mass).dot(downhill);
   EXPECT_TRUE(run_until(*simulation, 0.3));
   const Diagnostics early = simulation->diagnose();
   const double from = simulation->counters().time;
   EXPECT_TRUE(run_until(*simulation, 1.1));
   const Diagnostics late = simulation->diagnose();
   const double to = simulation->counters().time;
-  return {(late.momentum - early.momentum).dot(downhill) / late.mass / (to - from),
-          late.center_of_mass.dot(downhill) - start, to - 0.1};
+  return {(to_vec3(late.momentum) - to_vec3(early.momentum)).dot(downhill) / late.mass / (to - from),
+          to_vec3(late.center_of_mass).dot(downhill) - start, to - 0.1};
 }
 
 double expected(double degrees, double friction) {

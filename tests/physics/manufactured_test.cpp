@@ -9,8 +9,10 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/compiler/compiler.h"
 #include "engine/simulation/points.h"
 #include "engine/state/state_hash.h"
+#include "engine/step/stepper.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {
@@ -142,22 +144,22 @@ template <class Real>
 void push_by(const Force& force, const Scene& scene, CompiledScene<Real>& compiled) {
   for (auto& pass : compiled.plan.scatter[0]) {
     if (pass.description.effect != Manufactured::kName) continue;
-    pass = PassMaker<Real>(compiled.plan.scratch, compiled.plan.tables, &compiled.state.sets[0])
-               .over_particles(
-                   {pass.description.name, pass.description.reason},
-                   reads(kToldVelocity, Manufactured::kX, Manufactured::kY, Manufactured::kZ),
-                   writes(kToldVelocity),
-                   [force, solution = scene.effect<Manufactured>().list[0],
-                    e = scene.materials[0].elasticity()](const auto& at) {
-                     const auto told = at.write(kToldVelocity);
-                     for (std::size_t p = 0; p < at.count(); ++p) {
-                       const Vec3 X(double(at.read(Manufactured::kX)[p]), double(at.read(Manufactured::kY)[p]),
-                                    double(at.read(Manufactured::kZ)[p]));
-                       const Vec3 b = double(at.dt()) * force(solution, X, at.time(), e);
-                       for (std::size_t i = 0; i < 3; ++i)
-                         told[i][p] = static_cast<Real>(double(told[i][p]) + b[static_cast<int>(i)]);
-                     }
-                   });
+    pass =
+        PassMaker<Real>(compiled.plan.scratch, compiled.plan.tables, &compiled.state.sets[0])
+            .over_particles(
+                {pass.description.name, pass.description.reason},
+                reads(kP2gVelocity, Manufactured::kX, Manufactured::kY, Manufactured::kZ), writes(kP2gVelocity),
+                [force, solution = scene.effect<Manufactured>().list[0],
+                 e = scene.materials[0].elasticity()](const auto& at) {
+                  const auto told = at.write(kP2gVelocity);
+                  for (std::size_t p = 0; p < at.count(); ++p) {
+                    const Vec3 X(double(at.read(Manufactured::kX)[p]), double(at.read(Manufactured::kY)[p]),
+                                 double(at.read(Manufactured::kZ)[p]));
+                    const Vec3 b = double(at.dt()) * force(solution, X, at.time(), e);
+                    for (std::size_t i = 0; i < 3; ++i)
+                      told[i][p] = static_cast<Real>(double(told[i][p]) + b[static_cast<int>(i)]);
+                  }
+                });
   }
 }
 struct Clouds {

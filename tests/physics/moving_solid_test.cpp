@@ -51,7 +51,7 @@ constexpr const char* kPlate = R"json({"repose": 1, "name": "plate", "grid": {"s
 TEST(MovingSolid, StickyPlate_CarriesTheBlockAtItsSpeed) {
   const auto simulation =
       simulate(scene_of(kPlate, {"colliders.plate.contact=sticky", "bodies.block.velocity=[1,0,0]"}), 2);
-  const Vec3 start = simulation->diagnose().center_of_mass;
+  const Triple start = simulation->diagnose().center_of_mass;
   ASSERT_TRUE(run_until(*simulation, 0.5));
   const Diagnostics end = simulation->diagnose();
   const double moved = end.center_of_mass[0] - start[0];

@@ -7,10 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/reader.h"
+#include "engine/base/vector.h"
+#include "engine/reading/reader.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/simulation.h"
 
 namespace repose {
+
+/// Of a vector, in shares of what it was.
+inline double change(const Triple& before, const Triple& after) {
+  return (to_vec3(after) - to_vec3(before)).norm() / to_vec3(before).norm();
+}
 
 /// A scene from text, or from a file of apps/scenes; a scene that is wrong throws, which fails the test.
 Scene scene_of(const std::string& text, const std::vector<std::string>& overrides = {});

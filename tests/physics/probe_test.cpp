@@ -100,7 +100,7 @@ TEST(Probe, OffCentreWeight_TurnsByItsArm) {
   ASSERT_TRUE(advance(*simulation, 12));
   const Diagnostics figures = simulation->diagnose();
   const double weight = 9.81 * figures.mass;
-  const Vec3 expected = (figures.center_of_mass - Vec3(0, 5, 0.1)).cross(Vec3(0, -weight, 0));
+  const Vec3 expected = (to_vec3(figures.center_of_mass) - Vec3(0, 5, 0.1)).cross(Vec3(0, -weight, 0));
   const Vec3 torque(value(*simulation, "scales", "torque.x"), value(*simulation, "scales", "torque.y"),
                     value(*simulation, "scales", "torque.z"));
   report("torque_error", (torque - expected).norm() / expected.norm());
@@ -171,7 +171,7 @@ TEST(Probe, ImpulseOfFloor_IsTheChangeOfMomentumThoughStepsAreRefused) {
     "gravity": {"acceleration": [0, 0, 0]},
     "probes": [{"name": "floor", "type": "force", "collider": "floor"}]})json"),
                                    2);
-  const Vec3 before = simulation->diagnose().momentum;
+  const Triple before = simulation->diagnose().momentum;
   int redone = 0;
   for (int k = 0; k < 200; ++k) {
     const auto step = simulation->step();

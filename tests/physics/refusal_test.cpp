@@ -3,8 +3,10 @@
 
 #include <limits>
 
+#include "engine/compiler/compiler.h"
 #include "engine/plan/frame_clock.h"
 #include "engine/state/state_hash.h"
+#include "engine/step/stepper.h"
 #include "tests/physics/physics_probe.h"
 
 namespace repose {
@@ -27,9 +29,9 @@ TEST(Refusal, GravityThatThrowsOverCells_IsErrorOfPhysics) {
   EXPECT_EQ(static_cast<int>(step.error().kind), 70);
   EXPECT_NE(step.error().message.find("particle "), std::string::npos) << step.error().message;
   EXPECT_NE(step.error().message.find("'block'"), std::string::npos) << step.error().message;
-  ASSERT_TRUE(simulation->offender());
-  EXPECT_EQ(simulation->offender()->set, "block");
-  EXPECT_LT(simulation->offender()->id, simulation->particles());
+  ASSERT_TRUE(simulation->failed_particle());
+  EXPECT_EQ(simulation->failed_particle()->set, "block");
+  EXPECT_LT(simulation->failed_particle()->id, simulation->particles());
   EXPECT_EQ(simulation->hash(), before);
   EXPECT_EQ(simulation->counters().step, 0);
   EXPECT_EQ(simulation->counters().time, 0.0);
@@ -89,9 +91,9 @@ TEST(Refusal, StepOfManyCells_NamesParticleAndReason) {
   for (const int sound_steps : {0, 40}) {
     const Forced flight = force(sound_steps, 0.1);
     EXPECT_FALSE(flight.report.accepted);
-    ASSERT_TRUE(flight.report.offender);
-    EXPECT_EQ(flight.report.offender->set, "block");
-    EXPECT_EQ(flight.report.offender->reason, "would move over a cell");
+    ASSERT_TRUE(flight.report.failed);
+    EXPECT_EQ(flight.report.failed->set, "block");
+    EXPECT_EQ(flight.report.failed->reason, "would move over a cell");
     EXPECT_EQ(state_hash(flight.state), flight.before);
     EXPECT_EQ(flight.state.counters.step, sound_steps);
   }

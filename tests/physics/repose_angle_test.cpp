@@ -9,7 +9,7 @@ namespace repose {
 namespace {
 
 /// A cone of 30 degrees on a floor that it sticks to; it takes up its weight over a quarter of a second.
-constexpr const char* kCone = R"json({"repose": 1, "name": "cone",
+constexpr const char* kYieldSlope = R"json({"repose": 1, "name": "cone",
   "parameters": {"radius": 0.2, "phi": 35},
   "grid": {"spacing": 0.01},
   "materials": {"sand": {"type": "drucker_prager", "friction_angle": "= phi"}},
@@ -21,7 +21,7 @@ constexpr const char* kCone = R"json({"repose": 1, "name": "cone",
 
 /// By how many degrees the slope changes in the two seconds after gravity is full.
 double slope_change(const std::string& phi) {
-  const Scene scene = scene_of(kCone, {"parameters.phi=" + phi});
+  const Scene scene = scene_of(kYieldSlope, {"parameters.phi=" + phi});
   const auto simulation = simulate(scene);
   const double volume = particle_volume(scene, *simulation);
   const auto slope = [&] {

@@ -138,13 +138,13 @@ struct Change {
 Change fly(const std::vector<std::string>& overrides) {
   const auto simulation = simulate(scene_of(kSpinner, overrides));
   const auto turning = [](const Diagnostics& d) {
-    return d.kinetic_energy + d.affine_energy + d.elastic_energy - 0.5 * d.momentum.squaredNorm() / d.mass;
+    return d.kinetic_energy + d.affine_energy + d.elastic_energy -
+           0.5 * to_vec3(d.momentum).squaredNorm() / d.mass;
   };
   const Diagnostics start = simulation->diagnose();
   EXPECT_TRUE(run_steps(*simulation, 200));
   const Diagnostics end = simulation->diagnose();
-  return {(end.momentum - start.momentum).norm() / start.momentum.norm(),
-          (end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm(),
+  return {change(start.momentum, end.momentum), change(start.angular_momentum, end.angular_momentum),
           turning(end) / turning(start)};
 }
 

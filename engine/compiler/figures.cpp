@@ -1,0 +1,81 @@
+#include "engine/compiler/figures.h"
+
+#include <algorithm>
+
+#include "engine/base/costs.h"
+#include "engine/compiler/compilation.h"
+
+namespace repose {
+
+std::vector<EffectStatus> effect_status(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  std::vector<EffectStatus> list;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    std::size_t channels = 0;  // of the set that has most
+    const auto count = [&](const std::string& name, const std::string& material) {
+      const SetDescription set = set_description(scene, name, material_index(scene, material));
+      channels = std::max(channels, effect.channels(set).size());
+    };
+    for (const BodyDescription& body : scene.bodies) count(body.name, body.material);
+    for (const Inlet& inlet : inlets(scene)) count(inlet.name, inlet.material);
+    const double nanoseconds = effect.on() ? cost_of(effect.kName) : 0.0;
+    list.push_back({effect.kName, effect.on(), effect.why(), channels * real, nanoseconds});
+  });
+  return list;
+}
+
+std::size_t channels_per_particle(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  std::size_t bytes = 0;
+  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
+  return bytes / real;
+}
+
+double step_cost(const Scene& scene) {
+  return cost_of("step") + effects_cost(scene);
+}
+
+double effects_cost(const Scene& scene) {
+  double sum = 0.0;
+  for (const EffectStatus& effect : effect_status(scene)) sum += effect.nanoseconds;
+  return sum;
+}
+
+double last_frame_time(const Scene& scene) {
+  return clock_of(scene.time).at(scene.time.frames);
+}
+
+double emitted_by(const Scene& scene, double time) {
+  double particles = 0.0;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    particles += effect.particles_by(time, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
+  });
+  return particles;
+}
+
+namespace {
+
+/// Channels that the laws of materials keep, of the set that has most.
+std::size_t law_channels(const Scene& scene) {
+  std::size_t most = 0;
+  for (const MaterialDescription& material : scene.materials) {
+    most =
+        std::max(most, std::visit([](const auto& law) { return law.kChannels.size(); }, material.parameters));
+  }
+  return most;
+}
+
+}  // namespace
+
+std::size_t bytes_per_particle(const Scene& scene) {
+  const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
+  const int affine = transfer_choice(scene).keeps_affine() ? kAffineComponents : 0;
+  std::size_t bytes =
+      real * (static_cast<std::size_t>(3 + 3 + affine + kStrainComponents) + law_channels(scene)) +
+      sizeof(std::uint32_t);
+  bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
+  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
+  return bytes;
+}
+
+}  // namespace repose

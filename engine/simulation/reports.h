@@ -1,0 +1,70 @@
+// Repose: what a simulation tells of itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/profile.h"
+#include "engine/base/triple.h"
+#include "engine/plan/report.h"
+
+namespace repose {
+
+/// What a frame took.
+struct FrameReport {
+  std::int64_t frame = 0;  ///< the frame that is now complete
+  double time = 0.0;       ///< s
+  bool resumed = false;    ///< it was begun before: what it took until then is in none of the figures below
+  std::int64_t steps = 0;
+  double least_dt = 0.0, largest_dt = 0.0;                    ///< s
+  std::array<std::int64_t, kLimits> limits{};                 ///< steps bound by each Limit
+  std::int64_t redone = 0;                                    ///< halvings
+  std::string first_refusal;                                  ///< why the first of them; empty without any
+  std::int64_t newton_iterations = 0, linear_iterations = 0;  ///< of implicit steps that were made
+  double seconds = 0.0;                                       ///< wall time
+  Profile profile;                                            ///< wall time per phase
+};
+
+/// A pass of the step.
+struct PassReport {
+  std::string phase;  ///< when it runs, and of which set
+  std::string name;
+  std::string reason;                      ///< which scene key asked for it; empty for the core
+  std::string effect;                      ///< that added it; empty for the core
+  std::vector<std::string> reads, writes;  ///< names of handles
+};
+
+/// Figures of a state: energies, momenta, and how deep the deepest particle is in a solid.
+struct Diagnostics {
+  std::uint64_t particles = 0;
+  double mass = 0.0;              ///< kg
+  double volume = 0.0;            ///< sum of V0 exp(tr eps): the volume as the elastic strain leaves it, m^3
+  double kinetic_energy = 0.0;    ///< of particle velocities, J
+  double affine_energy = 0.0;     ///< of the matrices C that particles keep, J
+  double elastic_energy = 0.0;    ///< J
+  double potential_energy = 0.0;  ///< -m g . x with the scene's full gravity, J
+  Triple momentum{};              ///< kg m/s
+  Triple angular_momentum{};      ///< about the scene's origin, with the affine part, kg m^2/s
+  Triple center_of_mass{};        ///< m
+  Triple lower{}, upper{};        ///< bounds of the particles, m; zero if there are none
+  double max_speed = 0.0;         ///< m/s
+  double deepest = 0.0;           ///< largest depth of a particle inside a solid, m; 0 if none is inside
+  std::string deepest_solid;      ///< which solid
+  std::uint32_t deepest_id = 0;   ///< which particle
+};
+
+/// What has begun and what has ended so far. In particles: initial + emitted - removed = held, exactly.
+struct LedgerReport {
+  struct Entry {
+    std::string name;
+    std::uint64_t particles = 0;
+    double mass = 0.0;  ///< kg
+  };
+  std::uint64_t initial = 0;
+  Entry emitted, removed, held;
+  std::vector<Entry> emitters, sinks;  ///< by name
+};
+
+}  // namespace repose

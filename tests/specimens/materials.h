@@ -1,0 +1,8 @@
+// Repose: the list of specimens of materials; see kernels/material/materials.h, which includes it where
+// REPOSE_SPECIMENS is defined.
+#ifndef REPOSE_TESTS_SPECIMENS_MATERIALS_H_LIST
+#define REPOSE_TESTS_SPECIMENS_MATERIALS_H_LIST
+#define REPOSE_SPECIMEN_MATERIALS(X) X(VonMises)
+#endif
+
+#include "tests/specimens/von_mises.h"
