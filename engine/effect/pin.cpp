@@ -92,7 +92,7 @@ constexpr TableHandle<"pinned nodes", PinnedNodes> kPinnedNodes;
 std::vector<Example> Pins::examples() {
   return {{"pins",
            {},
-           {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.1, 1]}}])"}}};
+           {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.07, 1]}}])"}}};
 }
 
 void Pins::declare(Fields& fields, const SceneOutline&) {
