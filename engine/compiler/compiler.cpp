@@ -83,7 +83,6 @@ SetDescription set_description(const Scene& scene, const std::string& name, int 
       [&set](const auto& law) {
         const auto initial = law.initial_channels();
         for (std::size_t k = 0; k < initial.size(); ++k) set.channels.push_back({law.kChannels[k], initial[k]});
-        set.law_channels = initial.size();
       },
       of.parameters);
   for_each_effect(scene.effects, [&set](const auto& effect) {

@@ -26,9 +26,11 @@ std::vector<EffectStatus> effect_status(const Scene& scene) {
 
 std::size_t channels_per_particle(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
-  std::size_t bytes = 0;
-  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
-  return bytes / real;
+  std::size_t of_laws = 0, of_effects = 0;
+  for (const MaterialDescription& material : scene.materials)
+    of_laws = std::max(of_laws, law_channels_of(material.parameters));
+  for (const EffectStatus& effect : effect_status(scene)) of_effects += effect.bytes_per_particle / real;
+  return of_laws + of_effects;
 }
 
 double step_cost(const Scene& scene) {
@@ -53,28 +55,12 @@ double emitted_by(const Scene& scene, double time) {
   return particles;
 }
 
-namespace {
-
-/// Channels that the laws of materials keep, of the set that has most.
-std::size_t law_channels(const Scene& scene) {
-  std::size_t most = 0;
-  for (const MaterialDescription& material : scene.materials) {
-    most =
-        std::max(most, std::visit([](const auto& law) { return law.kChannels.size(); }, material.parameters));
-  }
-  return most;
-}
-
-}  // namespace
-
 std::size_t bytes_per_particle(const Scene& scene) {
   const std::size_t real = scene.grid.precision == Precision::kSingle ? 4 : 8;
   const int affine = transfer_choice(scene).keeps_affine() ? kAffineComponents : 0;
-  std::size_t bytes =
-      real * (static_cast<std::size_t>(3 + 3 + affine + kStrainComponents) + law_channels(scene)) +
-      sizeof(std::uint32_t);
+  const auto every = static_cast<std::size_t>(3 + 3 + affine + kStrainComponents);
+  std::size_t bytes = real * (every + channels_per_particle(scene)) + sizeof(std::uint32_t);
   bytes += real + sizeof(std::uint32_t) + sizeof(std::uint8_t);  // ordering: a channel, a permutation, a cell
-  for (const EffectStatus& effect : effect_status(scene)) bytes += effect.bytes_per_particle;
   return bytes;
 }
 

@@ -18,7 +18,7 @@ struct EffectStatus {
 };
 std::vector<EffectStatus> effect_status(const Scene& scene);
 
-/// Channels of the set that has most.
+/// Channels of laws and of effects, of the set that has most of each.
 std::size_t channels_per_particle(const Scene& scene);
 
 /// ns per particle and step, about: an explicit step with the scene's effects, and the effects alone.
@@ -31,7 +31,7 @@ double last_frame_time(const Scene& scene);
 double emitted_by(const Scene& scene, double time);
 
 /// Numbers per particle that an implicit solve keeps: a tangent, gradients, trial states, linear models.
-inline constexpr std::size_t kSolverNumbers = 75;
+inline constexpr std::size_t kSolverNumbers = 75 + kMostLawChannels;
 
 /// Bytes per particle of all channels and of what ordering keeps beside them.
 std::size_t bytes_per_particle(const Scene& scene);

@@ -72,8 +72,11 @@ ParticleSet<Real> empty_set(Compilation<Real>& compilation, const std::string& n
   set.material = material_index(scene, material);
   set.keeps_affine = transfer_choice(scene).keeps_affine();
   compilation.sets.push_back(set_description(scene, name, set.material));
-  for (const Channel& channel : compilation.sets.back().channels) set.extra.push_back({channel.name, {}});
-  set.law_channels = compilation.sets.back().law_channels;
+  for (const Channel& channel : compilation.sets.back().channels) {
+    REPOSE_ASSERT(set.extra_index(channel.name) == set.extra.size());  // two channels have one name
+    set.extra.push_back({channel.name, {}});
+  }
+  set.law_channels = compilation.sets.back().law_channels();
   return set;
 }
 

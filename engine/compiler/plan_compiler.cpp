@@ -14,12 +14,12 @@ namespace {
 /// A material ready for the kernels; once for each set.
 template <class Real>
 MaterialRuntime<Real> make_material(const Kernels<Real>& kernels, const MaterialDescription& material) {
-  MaterialRuntime<Real> runtime{kernels.material[material.law()], nullptr};
+  MaterialRuntime<Real> runtime{kernels.material[material.law()], nullptr,
+                                law_channels_of(material.parameters)};
   std::visit(
       [&runtime](const auto& parameters) {
         using Parameters = std::decay_t<decltype(parameters)>;
         runtime.constants = std::make_shared<typename Parameters::template Constants<Real>>(parameters);
-        runtime.channels = Parameters::kChannels.size();
         if constexpr (Parameters::kHasCone) runtime.yield_slope = static_cast<Real>(parameters.yield_slope());
       },
       material.parameters);

@@ -170,7 +170,7 @@ class ContactWithSolids : public Effect<Real> {
         [](const auto& at, std::vector<Constraint<Real>>& constraints) {
           at.read(kContactTables).list(at.block(), at.place(), at.dt(), at.read(kNodeVelocity), constraints);
         },
-        [=](ForceSlot<Real>& applied) {
+        [=](NodeSlot<Real>& applied) {
           applied.add({"collide, friction", "colliders"}, reads(kNodeVelocity, kContactTables),
                       writes(kNodeVelocity, tilde, log), [logs = log.declared](const auto& at) {
                         at.read(kContactTables)

@@ -50,7 +50,6 @@ struct SetDescription {
   std::string material;  ///< its name in the scene
   MaterialParameters parameters;
   std::vector<Channel> channels{};  ///< all that its particles keep, first those of the law; by the compiler
-  std::size_t law_channels = 0;
 
   /// What scenes call the law of its material.
   std::string_view law() const {
@@ -59,18 +58,11 @@ struct SetDescription {
   bool yields() const {
     return std::visit([](const auto& p) { return std::decay_t<decltype(p)>::kYields; }, parameters);
   }
-  const Elasticity& elasticity() const {
-    return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
-  }
+  const Elasticity& elasticity() const { return elasticity_of(parameters); }
   /// The cone by which it yields; null where its law has none.
-  const FrictionalCone* cone() const {
-    return std::visit(
-        [](const auto& p) -> const FrictionalCone* {
-          if constexpr (std::decay_t<decltype(p)>::kHasCone) return &p.cone();
-          return nullptr;
-        },
-        parameters);
-  }
+  const FrictionalCone* cone() const { return cone_of(parameters); }
+  /// How many of its channels its law keeps: the first.
+  std::size_t law_channels() const { return law_channels_of(parameters); }
 };
 
 /// A set of particles that is empty when the scene begins, and filled during the run.

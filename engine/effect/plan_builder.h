@@ -117,7 +117,7 @@ class PlanBuilder {
   OrderSlot<Real> after_order;
   TrySlot<Real> each_try;
   std::vector<SetSlots<Real>> sets;  ///< in the order of the state's
-  ForceSlot<Real> forces;
+  NodeSlot<Real> forces;
   ConstraintSlot<Real> constraints;
   MeasureSlot<Real> measures;
   RestSlot<Real> rest;

@@ -53,9 +53,9 @@ class ParticleSlot : public Slot<Real, ParticlePass<Real>> {
   }
 };
 
-/// Forces: what changes the velocity of nodes before anything holds them, or is solved for.
+/// Passes over the nodes of blocks.
 template <class Real>
-class ForceSlot : public Slot<Real, NodePass<Real>> {
+class NodeSlot : public Slot<Real, NodePass<Real>> {
  public:
   using Slot<Real, NodePass<Real>>::Slot;
 
@@ -180,13 +180,13 @@ class ConstraintSlot {
 
   bool implicit_;
   Listed listed_;
-  ForceSlot<Real> applied_;  // over nodes, as forces are
+  NodeSlot<Real> applied_;
   struct {
     std::vector<ConstraintPass<Real>> constraints;
     std::vector<NodePass<Real>> applied;
   } last_;
   Listed listed_last_;
-  ForceSlot<Real> applied_last_;
+  NodeSlot<Real> applied_last_;
 };
 
 /// Whether blocks sleep, and what wakes them from outside: whatever may move material that rests says so,

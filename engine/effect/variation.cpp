@@ -1,6 +1,7 @@
 #include "engine/effect/variation.h"
 
 #include <cmath>
+#include <map>
 
 #include "engine/effect/effect.h"
 
@@ -96,7 +97,7 @@ class PatchesOfSand : public Effect<Real> {
         return ready;
       if (auto ready = read(surroundings, p.cohesion_grid, key + ".cohesion_grid", grids.cohesion); !ready)
         return ready;
-      grids_.push_back(std::move(grids));
+      grids_[entry.material] = std::move(grids);
     }
     return {};
   }
@@ -104,7 +105,7 @@ class PatchesOfSand : public Effect<Real> {
   void initialize(Newcomers<Real>& newcomers) const override {
     const VariationParameters* p = variation_.find(newcomers.description);
     if (p == nullptr) return;
-    const Grids& grids = grids_of(*p);
+    const Grids& grids = grids_.at(newcomers.description.material);
     const auto seed = static_cast<std::uint64_t>(p->seed);
     const auto fill = [&](Real* factor, double share, std::uint64_t of, const ScalarGrid* grid) {
       for (std::size_t i = newcomers.first; i < newcomers.last; ++i) {
@@ -154,14 +155,8 @@ class PatchesOfSand : public Effect<Real> {
     return {};
   }
 
-  const Grids& grids_of(const VariationParameters& p) const {
-    std::size_t k = 0;
-    while (&variation_.entries[k].parameters != &p) ++k;
-    return grids_[k];
-  }
-
   Variation variation_;
-  std::vector<Grids> grids_;  // in the order of the entries
+  std::map<std::string, Grids> grids_;  // by material
 };
 
 }  // namespace

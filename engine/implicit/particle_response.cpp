@@ -94,7 +94,7 @@ void ParticleResponse<Real>::try_strain(std::size_t set, Chunk<Real>& chunk, con
   copy_law_channels(chunk, trial.law);
   MaterialInput<Real> in{};
   in.constants = plan_.sets[set].material.constants.get();
-  in.own = trial.law;
+  in.channels = trial.law;
   in.dt = sweep_.dt();
   in.count = count;
   std::copy_n(trial.strain, kStrainComponents, in.strain);
@@ -111,7 +111,7 @@ TangentInput<Real> ParticleResponse<Real>::input(std::size_t set, Chunk<Real>& c
   in.material.constants = response.material.constants.get();
   in.material.dt = sweep_.dt();
   in.material.count = chunk.particles.count;
-  for (std::size_t k = 0; k < kMostLawChannels; ++k) in.material.own[k] = own.law + k * kChunk;
+  for (std::size_t k = 0; k < kMostLawChannels; ++k) in.material.channels[k] = own.law + k * kChunk;
   for (std::size_t k = 0; k < kStrainComponents; ++k) {
     in.material.strain[k] = own.strain + k * kChunk;
     in.material.stress[k] = own.stress + k * kChunk;
@@ -144,7 +144,7 @@ TangentInput<Real> ParticleResponse<Real>::at_trial(std::size_t set, Chunk<Real>
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(trial.strain[k], in.material.count, in.material.strain[k]);
   for (std::size_t k = 0; k < chunk.set.law_channels; ++k)
-    std::copy_n(trial.law[k], in.material.count, in.material.own[k]);
+    std::copy_n(trial.law[k], in.material.count, in.material.channels[k]);
   prepare_return(set, chunk, in);
   return in;
 }
@@ -160,7 +160,7 @@ TangentInput<Real> ParticleResponse<Real>::at_rate(std::size_t set, Chunk<Real>&
   std::copy_n(keeps ? chunk.particles.affine : begin, kAffineComponents, in.material.gradient);
   for (std::size_t k = 0; k < kStrainComponents; ++k)
     std::copy_n(chunk.particles.strain[k], in.material.count, in.material.strain[k]);
-  copy_law_channels(chunk, in.material.own);
+  copy_law_channels(chunk, in.material.channels);
   plan_.sets[set].material.kernels.trial(in.material);
   prepare_return(set, chunk, in);
   return in;

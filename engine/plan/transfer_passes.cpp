@@ -27,7 +27,7 @@ void take_strain(const Strain& strain, MaterialInput<Real>& in) {
 }
 template <class Channels, class Real>
 void take_channels(const Channels& channels, MaterialInput<Real>& in) {
-  for (std::size_t k = 0; k < channels.size(); ++k) in.own[k] = const_cast<Real*>(channels[k]);
+  for (std::size_t k = 0; k < channels.size(); ++k) in.channels[k] = const_cast<Real*>(channels[k]);
 }
 
 }  // namespace

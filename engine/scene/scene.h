@@ -75,9 +75,7 @@ struct MaterialDescription {
 
   /// Position in the list of materials.
   int law() const { return static_cast<int>(parameters.index()); }
-  const Elasticity& elasticity() const {
-    return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
-  }
+  const Elasticity& elasticity() const { return elasticity_of(parameters); }
 };
 
 /// A solid filled with particles of one material.

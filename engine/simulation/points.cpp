@@ -64,7 +64,7 @@ void for_each_stress(const Source<Real>& source, Visit visit) {
             std::copy_n(source.set.strain[k].data() + first, in.count, in.strain[k]);
           }
           for (std::size_t k = 0; k < source.set.law_channels; ++k)  // read, as kernels of stress do
-            in.own[k] = const_cast<Real*>(source.set.extra[k].values.data() + first);
+            in.channels[k] = const_cast<Real*>(source.set.extra[k].values.data() + first);
           source.kernels.stress(in);
           for (std::size_t i = 0; i < in.count; ++i) {
             std::array<double, 6> tau;

@@ -100,10 +100,10 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
                        nodes.name + "\"; use it only to compare");
   }
   for (const MaterialDescription& material : scene.materials) {
-    const auto* sand = std::get_if<DruckerPragerParameters>(&material.parameters);
-    if (sand == nullptr || 3.0 * sand->cone_slope() / std::sqrt(2.0) < 1.0) continue;
+    const FrictionalCone* const cone = cone_of(material.parameters);
+    if (cone == nullptr || 3.0 * cone->cone_slope() / std::sqrt(2.0) < 1.0) continue;
     char angle[32];
-    std::snprintf(angle, sizeof angle, "%g", sand->friction_angle);
+    std::snprintf(angle, sizeof angle, "%g", cone->friction_angle);
     warnings.push_back("materials." + material.name + ": with friction_angle " + angle +
                        " and this cone_matching the sand can never yield in plane strain; see docs/math.md on "
                        "cone matching");

@@ -47,14 +47,9 @@ void cut_tension(T* const strain[6], const HenckyConstants<T>& elastic, T limit,
   }
 }
 
-template <class T>
-void fill_precision(CohesionKernels<T>& table) {
-  table = {cut_tension<T>};
-}
-
 void fill(Precisions<CohesionKernels>& tables) {
-  fill_precision(tables.single);
-  fill_precision(tables.dual);
+  tables.single = {cut_tension<float>};
+  tables.dual = {cut_tension<double>};
 }
 
 }  // namespace

@@ -44,14 +44,9 @@ void harden(const T* q, const HardeningConstants<T>& law, T* yield_slope, std::s
   }
 }
 
-template <class T>
-void fill_precision(HardeningKernels<T>& table) {
-  table = {harden<T>};
-}
-
 void fill(Precisions<HardeningKernels>& tables) {
-  fill_precision(tables.single);
-  fill_precision(tables.dual);
+  tables.single = {harden<float>};
+  tables.dual = {harden<double>};
 }
 
 }  // namespace

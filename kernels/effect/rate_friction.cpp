@@ -41,14 +41,9 @@ void strengthen(const T* const strain[6], const T* cohesion, const RateConstants
   }
 }
 
-template <class T>
-void fill_precision(RateFrictionKernels<T>& table) {
-  table = {strengthen<T>};
-}
-
 void fill(Precisions<RateFrictionKernels>& tables) {
-  fill_precision(tables.single);
-  fill_precision(tables.dual);
+  tables.single = {strengthen<float>};
+  tables.dual = {strengthen<double>};
 }
 
 }  // namespace

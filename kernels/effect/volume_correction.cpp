@@ -42,14 +42,9 @@ void close_volume(const T* const strain[6], T* gained, const T* trace_of_trial, 
   }
 }
 
-template <class T>
-void fill_precision(VolumeCorrectionKernels<T>& table) {
-  table = {open_volume<T>, close_volume<T>};
-}
-
 void fill(Precisions<VolumeCorrectionKernels>& tables) {
-  fill_precision(tables.single);
-  fill_precision(tables.dual);
+  tables.single = {open_volume<float>, close_volume<float>};
+  tables.dual = {open_volume<double>, close_volume<double>};
 }
 
 }  // namespace

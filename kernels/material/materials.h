@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "kernels/material/cone.h"
 #include "kernels/material/drucker_prager.h"
 #include "kernels/material/hencky.h"
 #include "kernels/material/neo_hookean.h"
@@ -36,6 +37,23 @@ constexpr std::size_t most_channels(const std::variant<P...>*) {
 }
 /// The most numbers that any law of the list keeps per particle beside the strain.
 inline constexpr std::size_t kMostLawChannels = most_channels(static_cast<MaterialParameters*>(nullptr));
+
+inline const Elasticity& elasticity_of(const MaterialParameters& parameters) {
+  return std::visit([](const auto& p) -> const Elasticity& { return p.elasticity; }, parameters);
+}
+/// The cone by which a material yields; null where its law has none.
+inline const FrictionalCone* cone_of(const MaterialParameters& parameters) {
+  return std::visit(
+      [](const auto& p) -> const FrictionalCone* {
+        if constexpr (std::decay_t<decltype(p)>::kHasCone) return &p.cone();
+        return nullptr;
+      },
+      parameters);
+}
+/// How many numbers its law keeps per particle.
+inline std::size_t law_channels_of(const MaterialParameters& parameters) {
+  return std::visit([](const auto& p) { return p.kChannels.size(); }, parameters);
+}
 
 }  // namespace repose
 #endif

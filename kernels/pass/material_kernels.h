@@ -14,9 +14,9 @@ template <class Real>
 struct MaterialInput {
   const void* constants;  ///< the material's Constants<Real>
   Real* strain[kStrainComponents];
-  const Real* gradient[kAffineComponents];  ///< of velocity, 1/s; not the stored C
-  Real* stress[kStrainComponents];          ///< out, Pa
-  std::array<Real*, kMostLawChannels> own;  ///< what the law keeps, as many as it has; in place
+  const Real* gradient[kAffineComponents];       ///< of velocity, 1/s; not the stored C
+  Real* stress[kStrainComponents];               ///< out, Pa
+  std::array<Real*, kMostLawChannels> channels;  ///< that the law keeps, as many as it has; in place
   Real dt;
   std::size_t count;
   std::ptrdiff_t ahead = 0;  ///< as in ParticleSpan

@@ -19,13 +19,13 @@ template <class L, class T>
 REPOSE_INLINE OwnChannels<L, Pack<T>> load_own(const MaterialInput<T>& in, std::size_t first,
                                                std::size_t lanes) {
   OwnChannels<L, Pack<T>> own;
-  for (std::size_t k = 0; k < kOwn<L>; ++k) own.number[k] = Pack<T>::load_first(in.own[k] + first, lanes);
+  for (std::size_t k = 0; k < kOwn<L>; ++k) own.number[k] = Pack<T>::load_first(in.channels[k] + first, lanes);
   return own;
 }
 template <class L, class T>
 REPOSE_INLINE void store_own(const OwnChannels<L, Pack<T>>& own, const MaterialInput<T>& in, std::size_t first,
                              std::size_t lanes) {
-  for (std::size_t k = 0; k < kOwn<L>; ++k) own.number[k].store_first(in.own[k] + first, lanes);
+  for (std::size_t k = 0; k < kOwn<L>; ++k) own.number[k].store_first(in.channels[k] + first, lanes);
 }
 
 }  // namespace HWY_NAMESPACE

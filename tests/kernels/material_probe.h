@@ -57,6 +57,9 @@ class MaterialProbe {
 
   Strains trial(const Strains& strains, const std::vector<Gradient<Real>>& gradients, Real dt) const {
     Own own = initial_own(strains.size());
+    return trial(strains, gradients, dt, own);
+  }
+  Strains trial(const Strains& strains, const std::vector<Gradient<Real>>& gradients, Real dt, Own& own) const {
     if (target_) return through_kernel(kernel().trial, strains, own, gradients, dt, false);
     Strains out = strains;
     for (std::size_t p = 0; p < out.size(); ++p) {
@@ -65,6 +68,7 @@ class MaterialProbe {
       if constexpr (HWY_NAMESPACE::HasOwnTrial<Material>) {
         auto numbers = own_of(own, p);
         out[p] = packed(Material::trial(constants_, unpacked(strains[p]), numbers.number, step));
+        for (std::size_t k = 0; k < own.size(); ++k) own[k][p] = numbers.number[k];
       } else {
         out[p] = packed(HWY_NAMESPACE::hencky_trial(unpacked(strains[p]), step));
       }
@@ -146,7 +150,7 @@ class MaterialProbe {
     }
     for (std::size_t k = 0; k < own.size(); ++k) {
       own[k].push_back(kCanary<Real>);
-      in.own[k] = own[k].data();
+      in.channels[k] = own[k].data();
     }
     pass(in);
     for (auto& channel : own) {

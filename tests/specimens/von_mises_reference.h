@@ -11,7 +11,7 @@ template <class Real>
 void return_map_von_mises(const VonMisesParameters& solid, const MaterialInput<Real>& in) {
   const double mu = solid.elasticity.mu(), root = std::sqrt(2.0 / 3.0);
   for (std::size_t p = 0; p < in.count; ++p) {
-    double a = in.own[0][p];
+    double a = in.channels[0][p];
     const auto back = with_eigenvalues(load(in.strain, p), [&](Eigen::Vector3d& strain) {
       const Eigen::Vector3d e = strain.array() - strain.sum() / 3.0;
       const double allowed = root * (solid.yield_stress + solid.hardening_modulus * a);
@@ -22,7 +22,7 @@ void return_map_von_mises(const VonMisesParameters& solid, const MaterialInput<R
       a += root * dg;
     });
     store(back, in.strain, p);
-    in.own[0][p] = static_cast<Real>(a);
+    in.channels[0][p] = static_cast<Real>(a);
   }
 }
 

@@ -47,7 +47,7 @@ TEST(VonMises, StrainsOfAllSizes_AgreeWithTheReference) {
     std::vector<double> channel[6];
     MaterialInput<double> in{};
     in.count = strains.size();
-    in.own[0] = expected_own[0].data();
+    in.channels[0] = expected_own[0].data();
     for (std::size_t k = 0; k < 6; ++k) {
       for (const auto& strain : strains) channel[k].push_back(strain[k]);
       in.strain[k] = channel[k].data();
