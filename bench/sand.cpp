@@ -74,15 +74,15 @@ void fill_block(Sand<Real>& sand, std::size_t first, std::size_t stencil, Random
 
 template <class Real>
 double count_run(const Sand<Real>& sand, std::size_t stencil) {
-  std::size_t runs = 0;
+  std::size_t segments = 0;
   std::array<int, 3> last{-9, -9, -9};
   for (std::size_t p = 0; p < sand.count; ++p) {
     std::array<int, 3> base;
     for (std::size_t axis = 0; axis < 3; ++axis) base[axis] = base_of(sand.channel[axis][p], stencil);
-    runs += base != last || p % kChunk == 0;
+    segments += base != last || p % kChunk == 0;
     last = base;
   }
-  return static_cast<double>(sand.count) / static_cast<double>(runs);
+  return static_cast<double>(sand.count) / static_cast<double>(segments);
 }
 
 }  // namespace

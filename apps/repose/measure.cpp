@@ -33,9 +33,9 @@ Json::Value figures(const Simulation& simulation, std::int64_t steps, double sec
   for (std::size_t k = 0; k < kPhaseNames.size(); ++k) {
     json["phases"][kPhaseNames[k]] = simulation.profile().seconds[k] * per;
   }
-  json["orders"] = Json::Int64(simulation.counters().orders);
+  json["sorts"] = Json::Int64(simulation.counters().sorts);
   json["time"] = simulation.counters().time;
-  json["bytes_per_particle"] = static_cast<double>(memory.particle_bytes + memory.order_bytes) / particles;
+  json["bytes_per_particle"] = static_cast<double>(memory.particle_bytes + memory.sort_bytes) / particles;
   json["scratch_bytes"] = Json::UInt64(memory.scratch_bytes);
   json["grid_bytes"] = Json::UInt64(memory.grid_bytes);
   json["grid_bytes_per_block"] =

@@ -92,7 +92,7 @@ void print_memory(const Simulation& simulation, double emission) {
   line("running", running, "   the sum of");
   line("  process", std::max(0.0, now - total), "   measured: program, libraries, shapes");
   part("  particles", memory.particle_bytes, "");
-  part("  order", memory.order_bytes, "");
+  part("  order", memory.sort_bytes, "");
   part("  threads", memory.scratch_bytes, "");
   part("  grid", memory.grid_bytes, "   " + std::to_string(memory.blocks) + " blocks at the start");
   part("  effects", memory.table_bytes, "   what is near solids, planes and pins");

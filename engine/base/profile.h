@@ -8,8 +8,8 @@
 namespace repose {
 
 /// Of an implicit step, kNewton is all of the solve but its linear systems, kKrylov those.
-enum class Phase { kOrder, kScatter, kNodes, kNewton, kKrylov, kAcceptance, kGather };
-inline constexpr std::array<const char*, 7> kPhaseNames{"order",  "scatter",    "nodes", "newton",
+enum class Phase { kSort, kScatter, kNodes, kNewton, kKrylov, kAcceptance, kGather };
+inline constexpr std::array<const char*, 7> kPhaseNames{"sort",   "scatter",    "nodes", "newton",
                                                         "krylov", "acceptance", "gather"};
 
 /// Seconds spent per phase.

@@ -6,7 +6,7 @@
 #include "engine/base/memory.h"
 #include "engine/compiler/compilation.h"
 #include "engine/geometry/seeding.h"
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 
 namespace repose {
 namespace {

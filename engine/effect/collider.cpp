@@ -151,8 +151,8 @@ class ContactWithSolids : public Effect<Real> {
   void add_tables(PlanBuilder<Real>& plan) const {
     const bool v_tilde = !plan.implicit() || plan.advection() == Advection::kBeforeFriction;
     const auto& tables = plan.make(kContactTables, solids_, plan.find(kContactLog), v_tilde);
-    plan.after_order.add({"nodes near solids", "colliders"}, reads(kTopology), writes(kContactTables),
-                         [](const auto& at) { at.write(kContactTables).follow_topology(at.state()); });
+    plan.after_sort.add({"nodes near solids", "colliders"}, reads(kTopology), writes(kContactTables),
+                        [](const auto& at) { at.write(kContactTables).follow_topology(at.state()); });
     if (!tables.any_moves()) return;
     const bool any_rigid =
         std::any_of(solids_.begin(), solids_.end(), [](const Solid& s) { return s.motion != nullptr; });

@@ -30,7 +30,7 @@ ContactTables<Real>::ContactTables(std::vector<Solid> solids, ContactLog* log, b
 /// How far from its middle a block may feel a solid: its nodes, each with the cell that it may be predicted to
 /// move along each axis, and its own reach.
 template <class Real>
-double ContactTables<Real>::reach(double spacing) {
+double ContactTables<Real>::search_distance(double spacing) {
   return (radius_of_nodes(1.0) + kNodeReach) * spacing;
 }
 
@@ -41,7 +41,7 @@ typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const Sta
   NearSolids near;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     if (solids_[k].moves()) continue;
-    if (solids_[k].distance(place.middle()) > reach(state.spacing)) continue;
+    if (solids_[k].distance(place.middle()) > search_distance(state.spacing)) continue;
     Near entry{k, {}};
     for (std::size_t node = 0; node < kBlockNodes; ++node) {
       const Vec3 x = place.node(node);
@@ -85,7 +85,7 @@ void ContactTables<Real>::find_bounds(const State<Real>& state) {
 
 template <class Real>
 void ContactTables<Real>::list_moving(const State<Real>& state) {
-  const double far = reach(state.spacing) + kMarginCells * state.spacing;
+  const double far = search_distance(state.spacing) + kMarginCells * state.spacing;
   listed_.clear();
   listed_begin_.assign(1, 0);
   for (const Index3& block : state.grid.blocks()) {
@@ -167,7 +167,7 @@ std::size_t ContactTables<Real>::find_touches(std::size_t block, const BlockPlac
   if (!any_moves()) return count;
   for (std::size_t i = listed_begin_[block]; i < listed_begin_[block + 1]; ++i) {
     const MovingSolid& moving = moving_[listed_[i]];
-    if (moving.distance(place.middle()) > reach(place.spacing())) continue;
+    if (moving.distance(place.middle()) > search_distance(place.spacing())) continue;
     add({moving.index(), nullptr, &moving});
   }
   std::sort(touches, touches + count, [](const Touch& a, const Touch& b) { return a.solid < b.solid; });

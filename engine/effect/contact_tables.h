@@ -59,7 +59,7 @@ class ContactTables {
   /// must.
   enum class Beside { kResting, kRigid, kDeforming };
 
-  static double reach(double spacing);
+  static double search_distance(double spacing);
   NearSolids tabulate(const State<Real>& state, const Index3& block) const;
   void find_bounds(const State<Real>& state);
   void list_moving(const State<Real>& state);

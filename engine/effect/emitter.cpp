@@ -153,7 +153,7 @@ class EmitterRuntime {
     });
   }
 
-  /// All that has crossed by now, of all emitters: the order event has to be paid for anyway.
+  /// All that has crossed by now, of all emitters: the sort event has to be paid for anyway.
   void run(State<Real>& state, ParticleEdit<Real>& edit) const {
     for (const Working<Real>& working : working_) {
       std::uint64_t& made = state.ledger.emitted[working.place.entry];

@@ -21,7 +21,7 @@ class FlowCounts {
   std::size_t planes() const { return planes_.size(); }
   void expect_sets(std::size_t sets);
 
-  /// Which blocks are near which planes; after order events.
+  /// Which blocks are near which planes; after sort events.
   template <class Real>
   void follow_topology(const State<Real>& state);
   /// Of particles of an occupied block, at positions in cells from its block's origin: on which sides they are,

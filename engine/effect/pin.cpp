@@ -90,9 +90,10 @@ constexpr TableHandle<"pinned nodes", PinnedNodes> kPinnedNodes;
 }  // namespace
 
 std::vector<Example> Pins::examples() {
-  return {{"pins",
-           {},
-           {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.07, 1]}}])"}}};
+  return {
+      {"pins",
+       {},
+       {R"(pins=[{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.07, 1]}}])"}}};
 }
 
 void Pins::declare(Fields& fields, const SceneOutline&) {
@@ -129,8 +130,8 @@ class HeldNodes : public Effect<Real> {
 
   void add_to(PlanBuilder<Real>& plan) const override {
     plan.make(kPinnedNodes, pins_);
-    plan.after_order.add({"pinned nodes", "pins"}, reads(kTopology), writes(kPinnedNodes),
-                         [](const auto& at) { at.write(kPinnedNodes).follow_topology(at.state()); });
+    plan.after_sort.add({"pinned nodes", "pins"}, reads(kTopology), writes(kPinnedNodes),
+                        [](const auto& at) { at.write(kPinnedNodes).follow_topology(at.state()); });
     plan.speeds.add([pins = pins_](double from, double to) { return fastest(pins, from, to); });
     plan.rest.wake("pins",
                    [pins = pins_](const State<Real>& state, const Index3& block, double from, double to) {

@@ -3,7 +3,7 @@
 // the order of a list. The compiler (engine/compiler/plan_compiler.cpp) puts the slots into the plan.
 //
 //   events          particles begin and end, between two steps
-//   after_order     what follows the topology
+//   after_sort     what follows the topology
 //   each_try        what is the same for all blocks, such as where solids stand
 //   per set:        before_scatter, before_motion, after_motion, before_return, after_return
 //   forces          change the velocity of nodes, before anything holds them
@@ -91,7 +91,7 @@ class PlanBuilder {
   PlanBuilder(StepPlan<Real>& plan, const State<Real>& all, const std::vector<SetDescription>& of_sets,
               Initialize make_ready)
       : events(plan.events, author_, plan.passes()),
-        after_order(plan.order, author_, plan.passes()),
+        after_sort(plan.sort, author_, plan.passes()),
         each_try(plan.prepare, author_, plan.passes()),
         forces(plan.nodes, author_, plan.passes()),
         constraints(plan, author_),
@@ -114,7 +114,7 @@ class PlanBuilder {
   PlanBuilder(const PlanBuilder&) = delete;
 
   EventSlot<Real> events;
-  OrderSlot<Real> after_order;
+  SortSlot<Real> after_sort;
   TrySlot<Real> each_try;
   std::vector<SetSlots<Real>> sets;  ///< in the order of the state's
   NodeSlot<Real> forces;

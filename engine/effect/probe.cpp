@@ -279,8 +279,8 @@ class Measuring : public Effect<Real> {
       if (probe.type == Type::kFlow) planes.push_back(probe.plane);
     }
     plan.make(kFlows, std::move(planes)).expect_sets(plan.sets.size());
-    plan.after_order.add({"blocks near planes of flow", "probes"}, reads(kTopology), writes(kFlows),
-                         [](const auto& at) { at.write(kFlows).follow_topology(at.state()); });
+    plan.after_sort.add({"blocks near planes of flow", "probes"}, reads(kTopology), writes(kFlows),
+                        [](const auto& at) { at.write(kFlows).follow_topology(at.state()); });
     for (SetSlots<Real>& set : plan.sets) {
       set.before_motion.add(
           {"sides of planes", "probes"}, reads(kPosition, kFlows), writes(kSides), [](const auto& at) {

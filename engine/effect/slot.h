@@ -66,13 +66,13 @@ class NodeSlot : public Slot<Real, NodePass<Real>> {
 };
 
 template <class Real>
-class OrderSlot : public Slot<Real, OrderPass<Real>> {
+class SortSlot : public Slot<Real, SortPass<Real>> {
  public:
-  using Slot<Real, OrderPass<Real>>::Slot;
+  using Slot<Real, SortPass<Real>>::Slot;
 
   template <class... R, class... W, class Body>
   void add(PassName name, Reads<R...> reads, Writes<W...> writes, Body body) {
-    this->put(this->maker_.after_order(std::move(name), reads, writes, std::move(body)));
+    this->put(this->maker_.after_sort(std::move(name), reads, writes, std::move(body)));
   }
 };
 

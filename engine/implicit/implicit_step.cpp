@@ -21,7 +21,7 @@ ImplicitStep<Real>::ImplicitStep(BlockSweep<Real>& blocks, Profile& profile)
 /// Vectors of the blocks as they now lie.
 template <class Real>
 void ImplicitStep<Real>::follow_topology() {
-  orders_ = sweep_.state().counters.orders;
+  sorts_ = sweep_.state().counters.sorts;
   sweep_.follow_topology();
   system_.follow_topology();
   balance_.follow_topology();
@@ -38,7 +38,7 @@ void ImplicitStep<Real>::follow_topology() {
 template <class Real>
 void ImplicitStep<Real>::reserve() {
   sweep_.begin();
-  if (orders_ != sweep_.state().counters.orders) follow_topology();
+  if (sorts_ != sweep_.state().counters.sorts) follow_topology();
 }
 
 template <class Real>
@@ -46,7 +46,7 @@ ImplicitReport ImplicitStep<Real>::solve() {
   const PhaseTimer timer(profile_, Phase::kNewton);
   sweep_.begin();
   const State<Real>& state = sweep_.state();
-  if (orders_ != state.counters.orders) follow_topology();
+  if (sorts_ != state.counters.sorts) follow_topology();
   collect_constraints();
   balance_.begin();
   const std::optional<double> norm = guess_.find(v_);

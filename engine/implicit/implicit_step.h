@@ -29,7 +29,7 @@ class ImplicitStep {
   void accept() { guess_.keep(v_); }
 
   /// After a state was loaded: what was known of its topology may be of another.
-  void forget() { orders_ = -1; }
+  void forget() { sorts_ = -1; }
   /// Makes room for the state that the sweep has begun.
   void reserve();
   std::size_t bytes(const State<Real>& state) const;
@@ -51,7 +51,7 @@ class ImplicitStep {
     bool usable() const { return good; }
   };
   Solved solve(double share, Vector& step);
-  double reach(const Vector& step, double length) { return balance_.reach(step, length); }
+  double longest_step(const Vector& step, double length) { return balance_.longest_step(step, length); }
   void take(const Vector& v, double length, const Vector& step, Vector& to);
 
  private:
@@ -77,7 +77,7 @@ class ImplicitStep {
   std::optional<LinearSolve<TangentSystem<Real>, General>> general_;
 
   Vector v_, step_, trial_, right_;  // of dv
-  std::int64_t orders_ = -1;         // of the topology that vectors are made for
+  std::int64_t sorts_ = -1;          // of the topology that vectors are made for
   SolveStatus linear_ = SolveStatus::kConverged;
 };
 

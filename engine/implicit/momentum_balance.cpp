@@ -119,7 +119,7 @@ double MomentumBalance<Real>::linearize(const Vector& dv, bool near) {
 
 /// Each particle's own bound, from the gradient there and its change along the step.
 template <class Real>
-double MomentumBalance<Real>::reach(const Vector& step, double length) {
+double MomentumBalance<Real>::longest_step(const Vector& step, double length) {
   std::vector<double> least(sweep_.state().grid.occupied_blocks().size(), 1.0);
   sweep_.over_particles(
       {.from = &step}, [&](std::size_t set, Chunk<Real>& chunk, const ImplicitScratch<Real>& own) {

@@ -22,7 +22,7 @@ class MomentumBalance {
   MomentumBalance(const ImplicitPlan<Real>& plan, ParticleSweep<Real>& sweep, ContactSet<Real>& contacts,
                   TangentSystem<Real>& system);
 
-  /// After each order event.
+  /// After each sort event.
   void follow_topology();
   /// A step from the nodes of the sweep's state, which hold mass and v^free, and `before_forces`, with v^n.
   void begin();
@@ -48,13 +48,13 @@ class MomentumBalance {
   double linearize(const Vector& dv, bool near);
   /// The longest length along step at which no particle is turned inside out, when the dv that was evaluated
   /// last lies `length` along it.
-  double reach(const Vector& step, double length);
+  double longest_step(const Vector& step, double length);
 
   std::size_t particle_bytes() const { return particles_.bytes(); }
   std::size_t block_bytes() const { return residual_.bytes(); }
 
  private:
-  static constexpr double kLeastDeterminant = 0.02;  // for reach(): twice what the kernel refuses
+  static constexpr double kLeastDeterminant = 0.02;  // for longest_step(): twice what the kernel refuses
 
   double push_scale(const Chunk<Real>& chunk) const;
   std::array<double, 3> finish_residual(const Vector& dv);

@@ -18,7 +18,7 @@ class ParticleResponse {
  public:
   ParticleResponse(const ImplicitPlan<Real>& plan, ParticleSweep<Real>& sweep, TangentSystem<Real>& system);
 
-  /// After each order event.
+  /// After each sort event.
   void follow_topology();
   /// A step begins. After it the next model is the first.
   void begin() { modelled_ = false; }

@@ -48,7 +48,7 @@ class ParticleSweep {
 
   /// For steps of a state; of what is about to be solved, the sweep over blocks knows.
   void begin() { lattice_ = make_lattice(state(), plan().transfer); }
-  /// After each order event, within begin() and before any sweep.
+  /// After each sort event, within begin() and before any sweep.
   void follow_topology();
   State<Real>& state() const { return blocks_.state(); }
   Real dt() const { return blocks_.dt(); }

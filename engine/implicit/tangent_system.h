@@ -20,7 +20,7 @@ class TangentSystem {
   TangentSystem(ParticleSweep<Real>& sweep, const ContactSet<Real>& contacts, Preconditioner preconditioner)
       : sweep_(sweep), contacts_(contacts), preconditioner_(preconditioner) {}
 
-  /// After each order event.
+  /// After each sort event.
   void follow_topology();
   /// Where the tangents of a chunk begin (kTangentValues numbers a particle, in groups).
   Real* tangent(std::size_t set, const Chunk<Real>& chunk) {

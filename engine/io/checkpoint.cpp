@@ -52,10 +52,10 @@ void for_each_field(AnyHead& head, Visit visit) {
   visit(counters.last_dt);
   visit(counters.max_speed);
   visit(counters.max_gradient);
-  visit(counters.order_due);
-  visit(counters.runs_when_ordered);
-  visit(counters.runs_wasted);
-  visit(counters.orders);
+  visit(counters.sort_due);
+  visit(counters.segments_when_sorted);
+  visit(counters.segments_wasted);
+  visit(counters.sorts);
   visit(counters.unseen_motion);
 }
 

@@ -22,7 +22,7 @@ struct Chunk {
   bool two_velocities = false;  ///< whether particles keep another velocity than the one that moves them
   struct Touched {
     std::uint64_t rows = 0;  ///< of the arena
-    std::size_t runs = 0;
+    std::size_t segments = 0;
   } touched{};
   const Real* moving_velocity[3] = {};                  ///< what moves positions, m/s; set by the gather
   const Real* moving_gradient[kAffineComponents] = {};  ///< what strains, 1/s

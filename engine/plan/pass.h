@@ -43,9 +43,9 @@ using NodePass = Pass<const NodeBlock<Real>&>;
 /// Lists what may keep the nodes of a block from moving freely in this step, whether or not it does yet.
 template <class Real>
 using ConstraintPass = Pass<const NodeBlock<Real>&, std::vector<Constraint<Real>>&>;
-/// Rebuilds what follows the topology, after each order event.
+/// Rebuilds what follows the topology, after each sort event.
 template <class Real>
-using OrderPass = Pass<State<Real>&>;
+using SortPass = Pass<State<Real>&>;
 /// What changes with time and is the same for all blocks, such as where solids stand: before the node passes,
 /// once for each try of a step.
 template <class Real>
@@ -58,7 +58,7 @@ enum class Moment {
 };
 
 /// Begins and ends particles. Asked before each step; an edit that is not empty is carried out at once, and an
-/// order event follows.
+/// sort event follows.
 template <class Real>
 struct EventPass {
   PassDescription description;
@@ -139,9 +139,9 @@ class PassMaker {
     return bind<ConstraintPass<Real>, Access>(std::move(name), reads, Writes<>{}, std::move(body));
   }
   template <class... R, class... W, class Body>
-  OrderPass<Real> after_order(PassName name, Reads<R...> reads, Writes<W...> writes, Body body) {
+  SortPass<Real> after_sort(PassName name, Reads<R...> reads, Writes<W...> writes, Body body) {
     using Access = StateAccess<Real, Reads<R...>, Writes<W...>>;
-    return bind<OrderPass<Real>, Access>(std::move(name), reads, writes, std::move(body));
+    return bind<SortPass<Real>, Access>(std::move(name), reads, writes, std::move(body));
   }
   template <class... R, class... W, class Body>
   PreparePass<Real> each_try(PassName name, Reads<R...> reads, Writes<W...> writes, Body body) {

@@ -79,7 +79,7 @@ std::string StepPlan<Real>::fault(const State<Real>& state) const {
   for (const HandleInfo& handle : kEveryParticle) known.learn(handle);
   Known at_events = known;
   std::string fault = at_events.follow_all(events);
-  if (fault.empty()) fault = known.follow_all(order);
+  if (fault.empty()) fault = known.follow_all(sort);
   if (fault.empty()) fault = known.follow_all(prepare);
   const auto of_set = [&](const Known& before, std::size_t k) {
     Known own = before;

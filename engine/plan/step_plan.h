@@ -61,7 +61,7 @@ struct StepPlan {
   MemoryBound memory;
 
   std::vector<EventPass<Real>> events;
-  std::vector<OrderPass<Real>> order;
+  std::vector<SortPass<Real>> sort;
   std::vector<PreparePass<Real>> prepare;
   std::vector<std::vector<ParticlePass<Real>>> scatter;  ///< per set
   std::vector<NodePass<Real>> nodes;                     ///< forces
@@ -90,7 +90,7 @@ struct StepPlan {
       for (auto& pass : passes) visit(phase, set, pass.description);
     };
     each("events", -1, plan.events);
-    each("order", -1, plan.order);
+    each("sort", -1, plan.sort);
     each("each step", -1, plan.prepare);
     for (std::size_t k = 0; k < plan.scatter.size(); ++k) each("scatter", static_cast<int>(k), plan.scatter[k]);
     each("nodes", -1, plan.nodes);

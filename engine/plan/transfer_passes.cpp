@@ -85,7 +85,7 @@ void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPa
                in.kept_stretching = kept_stretching;
                in.lattice = lattice;
                auto& touched = at.write(kTouched);
-               touched.runs += kernel(in, at.write(kNodeMomentum), touched.rows);
+               touched.segments += kernel(in, at.write(kNodeMomentum), touched.rows);
                if (!keeps_velocity) return;
                // What particles keep their velocity against must have felt no force: neither stress nor a push.
                in.particles = at.span();
@@ -247,7 +247,7 @@ void add_normalize(StepPlan<Real>& plan) {
 template <class Real>
 void add_velocity_before_forces(StepPlan<Real>& plan) {
   const char* const key = plan.transfer.figures().keeps_velocity ? "grid.transfer" : "time.integrator";
-  plan.order.push_back(plan.passes().after_order(
+  plan.sort.push_back(plan.passes().after_sort(
       {"room for velocity before forces", key}, reads(kTopology), writes(),
       [](const auto& at) { at.state().before_forces.resize(at.state().grid.size()); }));
   if (plan.transfer.figures().keeps_velocity) {

@@ -65,9 +65,9 @@ class SimulationOf final : public Simulation {
 
   /// Brings the state into order, makes room for steps, and looks at where bodies start. Error 78.
   Result<void> begin() {
-    if (auto ordered = stepper_.order_if_due(state_); !ordered) return refuse(ordered.error());
+    if (auto ordered = stepper_.sort_if_due(state_); !ordered) return refuse(ordered.error());
     stepper_.reserve(state_);
-    if (auto fits = stepper_.order_if_due(state_); !fits) return refuse(fits.error());
+    if (auto fits = stepper_.sort_if_due(state_); !fits) return refuse(fits.error());
     stepper_.begin_frame(state_);
     warnings_ = scene_warnings(scene_);
     for (std::string& warning : thin_solid_warnings(solids_, state_.spacing)) {

@@ -18,7 +18,8 @@
 //   double linearize(const Vector& v, bool near)       at v, which was evaluated last, or near it; returns the
 //                                                      |r| that the linear model has at v
 //   solve(double share, Vector& step)                  step = -A^-1 r of the model, |A step + r| <= share |r|
-//   double reach(const Vector& step, double length)    the longest length along step at which r is defined,
+//   double longest_step(const Vector& step, double length)    the longest length along step at which r is
+//   defined,
 //                                                      when at `length`, evaluated last, it is not
 //   void take(const Vector& v, double length, const Vector& step, Vector& to)    to = v + length step, or near
 //                                                                                it, as constraints have it
@@ -124,8 +125,8 @@ class Newton {
         report_.last = *norm;
         return true;
       }
-      const double reach = norm ? 1.0 : problem_.reach(step_, length);
-      length = std::max(0.1 * length, std::min(0.5 * length, 0.9 * reach));  // `take` may have left the line
+      const double longest = norm ? 1.0 : problem_.longest_step(step_, length);
+      length = std::max(0.1 * length, std::min(0.5 * length, 0.9 * longest));  // `take` may have left the line
       ++report_.shortened;
     }
     return false;

@@ -14,11 +14,12 @@ struct Counters {
   double time = 0.0;       ///< s
   double last_dt = 0.0;    ///< s
   double max_speed = 0.0;  ///< m/s, largest particle speed after the last step
-  double max_gradient = 0.0;            ///< 1/s, largest |grad v| of the last step
-  std::int32_t order_due = 1;           ///< a particle has drifted as far as its block allows
-  std::int64_t runs_when_ordered = -1;  ///< runs in the first step after the last order; -1: not yet counted
-  std::int64_t runs_wasted = 0;         ///< sum over the steps since of the runs beyond that
-  std::int64_t orders = 0;
+  double max_gradient = 0.0;  ///< 1/s, largest |grad v| of the last step
+  std::int32_t sort_due = 1;  ///< a particle has drifted as far as its block allows
+  std::int64_t segments_when_sorted =
+      -1;                            ///< segments in the first step after the last sort; -1: not yet counted
+  std::int64_t segments_wasted = 0;  ///< sum over the steps since of the segments beyond that
+  std::int64_t sorts = 0;
   double unseen_motion = 0.0;  ///< m, way of the fastest particle since sinks last looked; 0 without sinks
 };
 

@@ -28,7 +28,7 @@ struct NodeField {
   std::size_t bytes() const { return values.bytes(); }
 };
 
-/// How nodes moved in the last step. It outlives orders: it knows the blocks that it was written for.
+/// How nodes moved in the last step. It outlives sorts: it knows the blocks that it was written for.
 template <class Real>
 struct LastMotion {
   bool on = false;               ///< whether the scene's steps keep it

@@ -1,5 +1,5 @@
 // Repose: particles that begin and end. Events gather what is to go and what is to come in a ParticleEdit; it
-// is carried out between two steps and an order event follows. Where a particle lands depends on its set, its
+// is carried out between two steps and an sort event follows. Where a particle lands depends on its set, its
 // block and its id alone, so bits depend neither on threads nor on the memory that was there.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Repose: from seeds to a state: particles find their blocks, in the order in which they came. Runs once.
 #include <algorithm>
 
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 #include "engine/state/particle_edit.h"
 
 namespace repose {
@@ -48,7 +48,7 @@ void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells,
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     sort_by_occupied(state.sets[k], state.grid, std::move(cells[k]));
   }
-  state.counters.order_due = 1;
+  state.counters.sort_due = 1;
 }
 
 template void place_in_blocks<float>(State<float>&, std::vector<std::vector<Index3>>, const Ownership&);

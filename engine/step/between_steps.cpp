@@ -3,31 +3,31 @@
 namespace repose {
 namespace {
 
-/// What a run beyond the fewest costs a step (scatter and gather), against what ordering costs a particle, in
-/// nanoseconds as measured on one core with AVX-512. Constants, so that the choice is the same everywhere.
-constexpr std::int64_t kCostOfRun = 14;
-constexpr std::int64_t kCostOfOrder = 30;
+/// What a segment beyond the fewest costs a step (scatter and gather), against what sorting costs a particle,
+/// in nanoseconds as measured on one core with AVX-512. Constants, so that the choice is the same everywhere.
+constexpr std::int64_t kCostOfSegment = 14;
+constexpr std::int64_t kCostOfSort = 30;
 
 }  // namespace
 
 template <class Real>
-bool BetweenSteps<Real>::order_if_due(State<Real>& state) {
+bool BetweenSteps<Real>::sort_if_due(State<Real>& state) {
   const Counters& counters = state.counters;
   const auto particles = static_cast<std::int64_t>(state.particles());
-  const bool wasteful = counters.runs_wasted * kCostOfRun > particles * kCostOfOrder;
-  if (counters.order_due == 0 && !wasteful) return !topology_known_;
-  const PhaseTimer timer(profile_, Phase::kOrder);
-  active_.before_order(state);
-  const bool new_blocks = order_.order(state, threads_, plan_.transfer.ownership());
-  active_.after_order(state);
+  const bool wasteful = counters.segments_wasted * kCostOfSegment > particles * kCostOfSort;
+  if (counters.sort_due == 0 && !wasteful) return !topology_known_;
+  const PhaseTimer timer(profile_, Phase::kSort);
+  active_.before_sort(state);
+  const bool new_blocks = sort_.sort(state, threads_, plan_.transfer.ownership());
+  active_.after_sort(state);
   if (new_blocks) topology_known_ = false;
   return !topology_known_;
 }
 
 template <class Real>
 void BetweenSteps<Real>::follow_topology(State<Real>& state) {
-  const PhaseTimer timer(profile_, Phase::kOrder);
-  for (const auto& pass : plan_.order) pass.run(state);
+  const PhaseTimer timer(profile_, Phase::kSort);
+  for (const auto& pass : plan_.sort) pass.run(state);
   topology_known_ = true;
 }
 
@@ -35,7 +35,7 @@ void BetweenSteps<Real>::follow_topology(State<Real>& state) {
 template <class Real>
 Result<bool> BetweenSteps<Real>::carry_out_events(State<Real>& state, Moment moment) {
   if (plan_.events.empty()) return false;
-  const PhaseTimer timer(profile_, Phase::kOrder);
+  const PhaseTimer timer(profile_, Phase::kSort);
   std::optional<ParticleEdit<Real>> edit;
   Ledger ledger;
   const double unseen_motion = state.counters.unseen_motion;
@@ -48,7 +48,7 @@ Result<bool> BetweenSteps<Real>::carry_out_events(State<Real>& state, Moment mom
     pass.run(state, *edit);
   }
   if (!edit || edit->empty()) return false;
-  active_.before_order(state);
+  active_.before_sort(state);
   const auto new_blocks = apply_edit(std::move(*edit), state, plan_.transfer.ownership());
   if (!new_blocks) {  // nothing has begun or ended
     state.ledger = ledger;

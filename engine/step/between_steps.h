@@ -1,9 +1,9 @@
 // Repose: what happens between steps: particles begin and end, and are brought into order, lazily
-// (engine/state/block_order.h).
+// (engine/state/block_sort.h).
 #pragma once
 
 #include "engine/base/profile.h"
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 #include "engine/sweep/active_blocks.h"
 
 namespace repose {
@@ -19,19 +19,19 @@ class BetweenSteps {
   Result<bool> carry_out_events(State<Real>& state, Moment moment);
   /// Brings the order up to date, if it is due. Returns whether the blocks are not those that what follows the
   /// topology knows.
-  bool order_if_due(State<Real>& state);
+  bool sort_if_due(State<Real>& state);
   /// Rebuilds what follows the topology.
   void follow_topology(State<Real>& state);
 
-  std::size_t bytes() const { return order_.bytes(); }
-  std::size_t scratch_bytes() const { return order_.scratch_bytes(); }
+  std::size_t bytes() const { return sort_.bytes(); }
+  std::size_t scratch_bytes() const { return sort_.scratch_bytes(); }
 
  private:
   const StepPlan<Real>& plan_;
   Threads& threads_;
   ActiveBlocks<Real>& active_;
   Profile& profile_;
-  BlockOrder<Real> order_;
+  BlockSort<Real> sort_;
   bool topology_known_ = false;  // to the passes that follow it
 };
 

@@ -8,7 +8,7 @@ namespace repose {
 
 struct MemoryUse {
   std::size_t particle_bytes = 0;  ///< channels
-  std::size_t order_bytes = 0;     ///< ordering, and the stepper's numbers per block
+  std::size_t sort_bytes = 0;      ///< ordering, and the stepper's numbers per block
   std::size_t scratch_bytes = 0;   ///< of the threads, whatever the number of particles
   std::size_t grid_bytes = 0;      ///< tree, tables of neighbours and node fields
   std::size_t solver_bytes = 0;    ///< where steps are implicit
@@ -18,7 +18,7 @@ struct MemoryUse {
   std::uint64_t active_nodes = 0;
 
   std::size_t total() const {
-    return particle_bytes + order_bytes + scratch_bytes + grid_bytes + solver_bytes + table_bytes;
+    return particle_bytes + sort_bytes + scratch_bytes + grid_bytes + solver_bytes + table_bytes;
   }
 };
 

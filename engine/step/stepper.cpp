@@ -46,7 +46,7 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
     report.error = ready.error();
     return report;
   }
-  if (auto ready = order_if_due(state); !ready) {
+  if (auto ready = sort_if_due(state); !ready) {
     report.error = ready.error();
     return report;
   }
@@ -97,7 +97,7 @@ void Stepper<Real>::scatter() {
         if (keeps_velocity) std::memset(state.before_forces.block(block), 0, kBlockValues * sizeof(Real));
       },
       64);
-  runs_.assign(state.grid.occupied_blocks().size(), 0);
+  segments_.assign(state.grid.occupied_blocks().size(), 0);
   sweep_.over_scattering([this](OccupiedBlock<Real>& block) { scatter_block(block); });
 }
 
@@ -123,15 +123,15 @@ void Stepper<Real>::scatter_block(OccupiedBlock<Real>& block) {
   block.clear(arena_);
   if (keeps_velocity) block.clear(before_forces_);
   std::uint64_t rows = 0;
-  std::size_t runs = 0;
+  std::size_t segments = 0;
   block.for_each_chunk([&](std::size_t k, Chunk<Real>& chunk) {
     REPOSE_VALIDATE(within_reach(chunk.particles, plan_.transfer.nodes()));
     for (const auto& pass : plan_.scatter[k]) pass.run(chunk);
     rows |= chunk.touched.rows;
-    runs += chunk.touched.runs;
+    segments += chunk.touched.segments;
   });
   *block.rows = rows;
-  runs_[block.occupied] = runs;
+  segments_[block.occupied] = segments;
   State<Real>& state = block.state;
   block.add(arena_, [&state](std::size_t b) { return state.nodes.block(b); });
   if (keeps_velocity)
@@ -202,8 +202,8 @@ void Stepper<Real>::finish(double dt) {
   const Real shift = static_cast<Real>(nodes.base_shift);
   const bool outside = std::floor(all.lowest - shift) < Real(nodes.lowest_base) ||
                        std::floor(all.highest - shift) > Real(nodes.highest_base);
-  counters.order_due = outside ? 1 : 0;
-  count_runs(counters);
+  counters.sort_due = outside ? 1 : 0;
+  count_segments(counters);
   if (!plan_.events.empty()) counters.unseen_motion += counters.max_speed * static_cast<double>(sweep_.dt());
   counters.last_dt = dt;
   active_.end_step(state, static_cast<double>(sweep_.dt()), motion_);
@@ -213,11 +213,11 @@ void Stepper<Real>::finish(double dt) {
 }
 
 template <class Real>
-void Stepper<Real>::count_runs(Counters& counters) const {
-  std::int64_t runs = 0;
-  for (const std::size_t n : runs_) runs += static_cast<std::int64_t>(n);
-  if (counters.runs_when_ordered < 0) counters.runs_when_ordered = runs;
-  counters.runs_wasted += std::max<std::int64_t>(0, runs - counters.runs_when_ordered);
+void Stepper<Real>::count_segments(Counters& counters) const {
+  std::int64_t segments = 0;
+  for (const std::size_t n : segments_) segments += static_cast<std::int64_t>(n);
+  if (counters.segments_when_sorted < 0) counters.segments_when_sorted = segments;
+  counters.segments_wasted += std::max<std::int64_t>(0, segments - counters.segments_when_sorted);
 }
 
 template <class Real>
@@ -241,13 +241,13 @@ template <class Real>
 Result<void> Stepper<Real>::end_frame(State<Real>& state) {
   const CleanFloatingPoint clean;
   auto changed = change_particles(state, Moment::kEndOfFrame);
-  if (changed && unmeasured_) between_.order_if_due(state);
+  if (changed && unmeasured_) between_.sort_if_due(state);
   return changed;
 }
 
 template <class Real>
-Result<void> Stepper<Real>::order_if_due(State<Real>& state) {
-  const bool stale = between_.order_if_due(state);
+Result<void> Stepper<Real>::sort_if_due(State<Real>& state) {
+  const bool stale = between_.sort_if_due(state);
   if (!stale && !unmeasured_) return {};
   if (const auto error = outgrown(state)) return *error;
   unmeasured_ = false;
@@ -276,7 +276,7 @@ template <class Real>
 void Stepper<Real>::reserve(State<Real>& state) {
   const std::size_t occupied = state.grid.occupied_blocks().size();
   motion_.reserve(occupied);
-  runs_.reserve(occupied);
+  segments_.reserve(occupied);
   acceptance_.begin(state.grid.size());
   active_.refresh(state);
   sweep_.begin(state, Real(0));
@@ -288,8 +288,8 @@ template <class Real>
 MemoryUse Stepper<Real>::memory(const State<Real>& state) const {
   MemoryUse use;
   use.particle_bytes = state.particle_bytes();
-  use.order_bytes = between_.bytes() + active_.bytes() + acceptance_.bytes() + sweep_.bytes() +
-                    motion_.capacity() * sizeof(Motion<Real>) + runs_.capacity() * sizeof(std::size_t);
+  use.sort_bytes = between_.bytes() + active_.bytes() + acceptance_.bytes() + sweep_.bytes() +
+                   motion_.capacity() * sizeof(Motion<Real>) + segments_.capacity() * sizeof(std::size_t);
   use.scratch_bytes = between_.scratch_bytes() + sweep_.scratch_bytes();
   use.grid_bytes = state.grid_bytes();
   use.solver_bytes = implicit_ ? implicit_->bytes(state) : 0;

@@ -38,7 +38,7 @@ class Stepper {
   Result<void> follow(State<Real>& state);
   /// Brings the order, and what follows it, up to date, if that is due; a step does so by itself. Error 78:
   /// that would need more memory than the plan's bound; the state is sound and can be saved.
-  Result<void> order_if_due(State<Real>& state);
+  Result<void> sort_if_due(State<Real>& state);
   /// Carries out the events that are due, then brings the order up to date if there were any; a step does so by
   /// itself. Error 78: no ids are left.
   Result<void> end_frame(State<Real>& state);
@@ -59,7 +59,7 @@ class Stepper {
   void gather();
   Motion<Real> gather_block(OccupiedBlock<Real>& block);
   void finish(double dt);
-  void count_runs(Counters& counters) const;
+  void count_segments(Counters& counters) const;
 
   StepPlan<Real> plan_;
   Threads threads_;
@@ -72,7 +72,7 @@ class Stepper {
   std::optional<ImplicitStep<Real>> implicit_;
   std::size_t arena_, before_forces_;  // in scratch
   std::vector<Motion<Real>> motion_;   // per occupied block
-  std::vector<std::size_t> runs_;      // per occupied block
+  std::vector<std::size_t> segments_;  // per occupied block
   Count begun_with_, room_;            // of the first state; that there is room for
   bool unmeasured_ = false;            // particles have begun, and nobody has asked whether there is memory
 };

@@ -49,7 +49,7 @@ ActiveBlocks<Real>::ActiveBlocks(StepPlan<Real>& plan)
       moving_(plan) {}
 
 template <class Real>
-void ActiveBlocks<Real>::before_order(const State<Real>& state) {
+void ActiveBlocks<Real>::before_sort(const State<Real>& state) {
   if (!rule_) return;
   const std::size_t all = state.grid.occupied_blocks().size();
   old_blocks_.resize(all);
@@ -94,7 +94,7 @@ void ActiveBlocks<Real>::carry_over(State<Real>& state, Wakes wakes) {
 }
 
 template <class Real>
-void ActiveBlocks<Real>::after_order(State<Real>& state) {
+void ActiveBlocks<Real>::after_sort(State<Real>& state) {
   carry_over(state, [&](const Index3& block, const OldOccupiedBlocks& old) {
     bool beside_awake = false;
     for_each_around(block, [&](const Index3& next) {

@@ -36,8 +36,8 @@ class ActiveBlocks {
   /// block, and the neighbours of one that is gone wake. One that sleeps wakes when an edit changes the number
   /// of its particles, or when an order does so beside one that is awake: among sleepers a particle only finds
   /// the block that it had drifted into before they slept.
-  void before_order(const State<Real>& state);
-  void after_order(State<Real>& state);
+  void before_sort(const State<Real>& state);
+  void after_sort(State<Real>& state);
   void after_edit(State<Real>& state);
   /// After a state has been loaded.
   void forget() { listed_ = false; }

@@ -1,5 +1,5 @@
 // Repose: how a step goes over the blocks that take part: over nodes, or over particles with the nodes around
-// their block in arenas. Where particles write to nodes, blocks go by colour (engine/state/block_order.h says
+// their block in arenas. Where particles write to nodes, blocks go by colour (engine/state/block_sort.h says
 // why that gives equal bits); where they only read, all at once.
 #pragma once
 

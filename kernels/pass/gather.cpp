@@ -1,7 +1,7 @@
 // Repose: nodes to particles (Klar et al. 2016, eqs. 11-12, and the gradient of eq. 16).
 //   v = sum w v_i,   C = D^-1 sum w v_i (x_i - x_p)^T,   grad v = C by moments, sum v_i grad w^T by gradients
-// Runs keep their rows of nodes in registers; the sums over the four nodes of a row are taken in the order that
-// simd.h writes down.
+// Segments keep their rows of nodes in registers; the sums over the four nodes of a row are taken in the order
+// that simd.h writes down.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/gather.cpp"
 #include "hwy/foreach_target.h"
@@ -21,7 +21,7 @@ namespace {
 
 /// What decides the shape of the loops: many transfers share it.
 template <class Stencil, Affine affine, Force force>
-struct Shape {
+struct Loops {
   static constexpr int kWidth = Stencil::kWidth;
   static constexpr int kCenter = Stencil::kCenter;
   static constexpr bool kAffine = affine != Affine::kNone;
@@ -194,7 +194,7 @@ REPOSE_INLINE void ask_for(const Soon<T>& soon, std::size_t particle) {
 
 template <class Stencil, Affine affine, Force force, class T>
 void gather(const GatherInput<T>& in, const T* arena) {
-  using S = Shape<Stencil, affine, force>;
+  using S = Loops<Stencil, affine, force>;
   Staged<T> staged;
   Row<T> rows[S::kWidth * S::kWidth];
   const Row<T> z_positions = node_positions(T(S::kCenter));

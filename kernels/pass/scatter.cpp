@@ -1,7 +1,7 @@
 // Repose: particles to nodes. Node i of the stencil receives mass w m and momentum (Klar et al. 2016, eqs. 7-9)
 //   w (m v + m A (x_i - x_p)) + dt f_i,
 //   f_i = -V0 tau D^-1 w (x_i - x_p)  by moments (Hu et al. 2018),   or  -V0 tau grad w  by gradients
-// as rows of four nodes. Particles with one base node (a run) add up in registers and touch memory once.
+// as rows of four nodes. Particles with one base node (a segment) add up in registers and touch memory once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"
 #include "hwy/foreach_target.h"
@@ -21,7 +21,7 @@ namespace {
 
 /// What decides the shape of the loops: many transfers share it.
 template <class Stencil, Affine affine, Force force>
-struct Shape {
+struct Loops {
   static constexpr int kWidth = Stencil::kWidth;
   static constexpr int kCenter = Stencil::kCenter;
   static constexpr bool kAffine = affine != Affine::kNone;
@@ -51,7 +51,7 @@ REPOSE_INLINE Pack<T> p2g_affine(const Pack<T> (&c)[3][3], int row, int axis, T 
 template <class Stencil, Affine affine, Force force, class T>
 REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size_t lanes, Staged<T>& out) {
   using P = Pack<T>;
-  using S = Shape<Stencil, affine, force>;
+  using S = Loops<Stencil, affine, force>;
   locate<Stencil, force>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
   const P mass(in.mass), mass_per_cell(in.mass * in.lattice.spacing), zero(T(0));
   const P push_scale(-in.impulse_volume / in.lattice.spacing);
@@ -144,7 +144,7 @@ REPOSE_INLINE void unroll(Body body) {
   (std::make_integer_sequence<int, count>());
 }
 
-/// Adds one particle to the rows of its run. Along z a row does all nodes at once; then
+/// Adds one particle to the rows of its segment. Along z a row does all nodes at once; then
 ///   row (i, j) += wx_i wy_j (center + (i - c) slope_x + (j - c) slope_y) + (wx'_i wy_j push_x + wx_i wy'_j
 ///   push_y)
 template <class S, class T>
@@ -188,7 +188,7 @@ REPOSE_INLINE void add_particle(const Staged<T>& from, std::size_t lane, const R
   });
 }
 
-/// Adds the rows of a run to the arena and clears them.
+/// Adds the rows of a segment to the arena and clears them.
 template <int kWidth, class T>
 REPOSE_INLINE void flush(std::int32_t node, Row<T> (&rows)[kWidth * kWidth], T* arena, std::uint64_t& touched) {
   T* corner = arena + node * kNodeValues;
@@ -207,35 +207,35 @@ REPOSE_INLINE void flush(std::int32_t node, Row<T> (&rows)[kWidth * kWidth], T* 
   touched |= square << (node / kArenaSide);
 }
 
-/// Adds particles to the arena, a run at a time; `prepare(first, lanes, staged)` stages a pack of them. Returns
-/// the runs.
+/// Adds particles to the arena, a segment at a time; `prepare(first, lanes, staged)` stages a pack of them.
+/// Returns the segments.
 template <class S, class T, class Prepare>
-REPOSE_INLINE std::size_t add_runs(std::size_t count, T* arena, std::uint64_t& touched, Prepare prepare) {
+REPOSE_INLINE std::size_t add_segments(std::size_t count, T* arena, std::uint64_t& touched, Prepare prepare) {
   Staged<T> staged;
   Row<T> rows[S::kWidth * S::kWidth];
   HWY_UNROLL(16)
   for (int r = 0; r < S::kWidth * S::kWidth; ++r) rows[r] = zero_row<T>();
   const Row<T> z_positions = node_positions(T(S::kCenter));
   std::int32_t node = -1;
-  std::size_t runs = 0;
+  std::size_t segments = 0;
   for (const auto [first, lanes] : packs<T>(count)) {
     prepare(first, lanes, staged);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (staged.stencil.node[lane] != node) {
         if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
         node = staged.stencil.node[lane];
-        ++runs;
+        ++segments;
       }
       add_particle<S>(staged, lane, z_positions, rows);
     }
   }
   if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
-  return runs;
+  return segments;
 }
 
 template <class Stencil, Affine affine, Force force, class T>
 std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched) {
-  return add_runs<Shape<Stencil, affine, force>>(
+  return add_segments<Loops<Stencil, affine, force>>(
       in.particles.count, arena, touched,
       [&in](std::size_t first, std::size_t lanes, Staged<T>& staged)
           HWY_ATTR { stage<Stencil, affine, force>(in, first, lanes, staged); });
@@ -243,7 +243,7 @@ std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched)
 
 template <class Stencil, Force force, class T>
 void push(const PushInput<T>& in, T* arena, std::uint64_t& touched) {
-  add_runs<Shape<Stencil, Affine::kNone, force>>(
+  add_segments<Loops<Stencil, Affine::kNone, force>>(
       in.particles.count, arena, touched,
       [&in](std::size_t first, std::size_t lanes, Staged<T>& staged)
           HWY_ATTR { stage<Stencil, force>(in, first, lanes, staged); });

@@ -74,7 +74,7 @@ struct StiffnessInput {
 template <class Real>
 struct TransferKernels {
   /// Adds mass and momentum to the arena; sets the bit x * 8 + y of `rows` for each row touched; returns the
-  /// runs.
+  /// segments.
   std::size_t (*scatter)(const ScatterInput<Real>&, Real* arena, std::uint64_t& rows);
   void (*gather)(const GatherInput<Real>&, const Real* arena);
   /// The gradient alone, and the push that is its transpose: momentum and rows as in scatter.

@@ -1,5 +1,5 @@
 // Repose: the transfers between particles and nodes written once more, in double, node by node, straight from
-// the equations of kernels/transfer/transfer.h: no rows, no runs, weights as functions of distance. The
+// the equations of kernels/transfer/transfer.h: no rows, no segments, weights as functions of distance. The
 // yardstick of the kernels, for right and for speed. Stencils and transfers are named by their place in the
 // lists; inputs and arenas are those of the kernels.
 #pragma once

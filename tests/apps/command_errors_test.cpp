@@ -5,7 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 
 namespace repose {
 namespace {

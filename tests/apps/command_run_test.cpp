@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 #include "tests/file_bytes.h"
 
 namespace repose {
@@ -64,7 +64,7 @@ TEST_F(CommandRun, LogOfAFrame_HasEveryPromisedField) {
   EXPECT_EQ(frame["ledger"]["emitted"].asDouble(), 0.0);
   EXPECT_EQ(frame["ledger"]["removed"].asDouble(), 0.0);
   EXPECT_TRUE(frame["solver_iterations"].isInt());
-  for (const char* key : {"wall", "order", "scatter", "nodes", "acceptance", "gather"}) {
+  for (const char* key : {"wall", "sort", "scatter", "nodes", "acceptance", "gather"}) {
     EXPECT_TRUE(frame["seconds"][key].isDouble()) << key;
   }
   EXPECT_TRUE(frame["deepest"]["cells"].isDouble());

@@ -1,7 +1,7 @@
 // Repose tests: the commands that look without running: plan, check, bench, info, movie, schema.
 #include <gmock/gmock.h>
 
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 
 namespace repose {
 namespace {
@@ -30,7 +30,7 @@ TEST_F(Command, Bench_WritesEveryFigure) {
   EXPECT_EQ(json["threads"], 2);
   EXPECT_NE(json["target"].asString(), "");
   double phases = 0.0;
-  for (const char* phase : {"order", "scatter", "nodes", "acceptance", "gather"}) {
+  for (const char* phase : {"sort", "scatter", "nodes", "acceptance", "gather"}) {
     ASSERT_TRUE(json["phases"][phase].isDouble()) << phase;
     phases += json["phases"][phase].asDouble();
   }

@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 #include "tests/file_bytes.h"
 
 namespace repose {

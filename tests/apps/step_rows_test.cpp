@@ -6,7 +6,7 @@
 
 #include "apps/repose/run_log.h"
 #include "engine/reading/reader.h"
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 
 namespace repose {
 namespace {

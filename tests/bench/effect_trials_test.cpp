@@ -13,7 +13,7 @@
 #include "bench/effect_bench.h"
 #include "engine/compiler/compiler.h"
 #include "engine/compiler/figures.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 
 namespace repose {
 namespace {

@@ -69,10 +69,10 @@ void fill_gaps(Counters& counters, int byte) {
   counters.last_dt = c.last_dt;
   counters.max_speed = c.max_speed;
   counters.max_gradient = c.max_gradient;
-  counters.order_due = c.order_due;
-  counters.runs_when_ordered = c.runs_when_ordered;
-  counters.runs_wasted = c.runs_wasted;
-  counters.orders = c.orders;
+  counters.sort_due = c.sort_due;
+  counters.segments_when_sorted = c.segments_when_sorted;
+  counters.segments_wasted = c.segments_wasted;
+  counters.sorts = c.sorts;
   counters.unseen_motion = c.unseen_motion;
 }
 
@@ -135,10 +135,10 @@ TYPED_TEST(Checkpoint, SavedAndLoaded_IsTheSameBitForBit) {
   EXPECT_EQ(loaded.counters.last_dt, saved.counters.last_dt);
   EXPECT_EQ(loaded.counters.max_speed, saved.counters.max_speed);
   EXPECT_EQ(loaded.counters.max_gradient, saved.counters.max_gradient);
-  EXPECT_EQ(loaded.counters.order_due, saved.counters.order_due);
-  EXPECT_EQ(loaded.counters.runs_when_ordered, saved.counters.runs_when_ordered);
-  EXPECT_EQ(loaded.counters.runs_wasted, saved.counters.runs_wasted);
-  EXPECT_EQ(loaded.counters.orders, saved.counters.orders);
+  EXPECT_EQ(loaded.counters.sort_due, saved.counters.sort_due);
+  EXPECT_EQ(loaded.counters.segments_when_sorted, saved.counters.segments_when_sorted);
+  EXPECT_EQ(loaded.counters.segments_wasted, saved.counters.segments_wasted);
+  EXPECT_EQ(loaded.counters.sorts, saved.counters.sorts);
   ASSERT_EQ(loaded.grid.size(), saved.grid.size());
   EXPECT_TRUE(
       std::equal(loaded.grid.blocks().begin(), loaded.grid.blocks().end(), saved.grid.blocks().begin()));

@@ -1,7 +1,7 @@
 // Repose tests: numbers of the Drucker-Prager law worked out apart from the code: the cone for a friction
 // angle, the three cases of the return map, stresses, and what the law means in the triaxial and the
 // plane-strain experiment.
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 namespace {
@@ -65,17 +65,17 @@ TYPED_TEST(DruckerPragerGolden, Project_PrincipalStrains_TabulatedResults) {
     const ExactVector values(golden.strain[0], golden.strain[1], golden.strain[2]);
     strains.push_back(rounded<TypeParam>(values.asDiagonal().toDenseMatrix()));
   }
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    const auto projected = probe.return_map(strains);
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    const auto projected = rig.return_map(strains);
     for (std::size_t row = 0; row < strains.size(); ++row) {
       constexpr int kDiagonal[3] = {0, 3, 5};
       for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(projected[row][kDiagonal[i]], kGolden[row].projected[i], 0.1 * kTolerance<TypeParam>)
-            << probe.name() << ", row " << row;
+            << rig.name() << ", row " << row;
       }
-      for (const int off : {1, 2, 4}) EXPECT_EQ(projected[row][off], TypeParam(0)) << probe.name();
+      for (const int off : {1, 2, 4}) EXPECT_EQ(projected[row][off], TypeParam(0)) << rig.name();
     }
-    EXPECT_EQ(projected[2], strains[2]) << probe.name() << ": inside the cone nothing changes";
+    EXPECT_EQ(projected[2], strains[2]) << rig.name() << ": inside the cone nothing changes";
   }
 }
 
@@ -92,10 +92,10 @@ TYPED_TEST(DruckerPragerGolden, Project_TurnedStrains_TabulatedResults) {
       expected.push_back(q * projected.asDiagonal() * q.transpose());
     }
   }
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    const auto projected = probe.return_map(strains);
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    const auto projected = rig.return_map(strains);
     for (std::size_t k = 0; k < strains.size(); ++k) {
-      EXPECT_LE(largest_entry(exact(projected[k]) - expected[k]), 0.1 * kTolerance<TypeParam>) << probe.name();
+      EXPECT_LE(largest_entry(exact(projected[k]) - expected[k]), 0.1 * kTolerance<TypeParam>) << rig.name();
     }
   }
 }
@@ -103,10 +103,10 @@ TYPED_TEST(DruckerPragerGolden, Project_TurnedStrains_TabulatedResults) {
 TYPED_TEST(DruckerPragerGolden, Stress_OfTheFirstRow_TabulatedValues) {
   const Symmetric<TypeParam> strain{TypeParam(-0.05), 0, 0, TypeParam(0.03), 0, TypeParam(0.01)};
   constexpr double kStress[6] = {-5236.470360, 0, 0, -1312.521172, 0, -2293.508469};
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    const auto stress = probe.stress(probe.return_map({strain}));
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    const auto stress = rig.stress(rig.return_map({strain}));
     for (int k = 0; k < 6; ++k) {
-      EXPECT_NEAR(stress[0][k], kStress[k], sizeof(TypeParam) == 4 ? 1e-5 * 5236 : 2e-6) << probe.name();
+      EXPECT_NEAR(stress[0][k], kStress[k], sizeof(TypeParam) == 4 ? 1e-5 * 5236 : 2e-6) << rig.name();
     }
   }
 }
@@ -115,12 +115,12 @@ TYPED_TEST(DruckerPragerGolden, Project_NoFrictionPureExpansion_IsEmpty) {
   DruckerPragerParameters fluid = golden_sand();
   fluid.friction_angle = 0;
   const TypeParam t = TypeParam(0x1p-6);  // a third of 3t is t again: the deviator is exactly zero
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(fluid)) {
-    EXPECT_EQ(probe.return_map({{t, 0, 0, t, 0, t}})[0], Symmetric<TypeParam>{}) << probe.name();
-    const auto pressed = probe.return_map({{-t, 0, 0, -t, 0, -t}})[0];
-    EXPECT_NEAR(pressed[0], -t, 1e-6 * t) << probe.name() << ": pressure stays";
-    const auto sheared = probe.return_map({{-t, t, 0, -t, 0, -t}})[0];
-    EXPECT_NEAR(sheared[1], 0, 1e-6 * t) << probe.name() << ": shear does not";
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(fluid)) {
+    EXPECT_EQ(rig.return_map({{t, 0, 0, t, 0, t}})[0], Symmetric<TypeParam>{}) << rig.name();
+    const auto pressed = rig.return_map({{-t, 0, 0, -t, 0, -t}})[0];
+    EXPECT_NEAR(pressed[0], -t, 1e-6 * t) << rig.name() << ": pressure stays";
+    const auto sheared = rig.return_map({{-t, t, 0, -t, 0, -t}})[0];
+    EXPECT_NEAR(sheared[1], 0, 1e-6 * t) << rig.name() << ": shear does not";
   }
 }
 
@@ -131,9 +131,9 @@ TYPED_TEST(DruckerPragerGolden, Project_TriaxialCompression_YieldsAtMohrCoulomb)
     sand.friction_angle = angle;
     const double sine = std::sin(angle * std::numbers::pi / 180);
     const Symmetric<TypeParam> strain{TypeParam(-0.1), 0, 0, TypeParam(0.02), 0, TypeParam(0.02)};
-    for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      const auto stress = probe.stress(probe.return_map({strain}))[0];
-      EXPECT_NEAR(stress[0] / stress[3], (1 + sine) / (1 - sine), 10 * kTolerance<TypeParam>) << probe.name();
+    for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+      const auto stress = rig.stress(rig.return_map({strain}))[0];
+      EXPECT_NEAR(stress[0] / stress[3], (1 + sine) / (1 - sine), 10 * kTolerance<TypeParam>) << rig.name();
     }
   }
 }
@@ -144,11 +144,11 @@ TYPED_TEST(DruckerPragerGolden, Project_PlaneStrainMatching_YieldsAtMohrCoulomb)
   DruckerPragerParameters sand = golden_sand();
   sand.matching = ConeMatching::kPlaneStrain;
   const Symmetric<TypeParam> strain{TypeParam(-0.07), 0, 0, TypeParam(0.05), 0, TypeParam(-0.01)};
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-    const auto stress = probe.stress(probe.return_map({strain}))[0];
-    EXPECT_NEAR(stress[5], (stress[0] + stress[3]) / 2, 1e-5 * std::fabs(stress[5])) << probe.name();
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+    const auto stress = rig.stress(rig.return_map({strain}))[0];
+    EXPECT_NEAR(stress[5], (stress[0] + stress[3]) / 2, 1e-5 * std::fabs(stress[5])) << rig.name();
     EXPECT_NEAR((stress[0] - stress[3]) / (stress[0] + stress[3]), 0.5, 10 * kTolerance<TypeParam>)
-        << probe.name();
+        << rig.name();
   }
 }
 
@@ -156,11 +156,11 @@ TYPED_TEST(DruckerPragerGolden, Project_PlaneStrainMatching_YieldsAtMohrCoulomb)
 TYPED_TEST(DruckerPragerGolden, Trial_OedometricPress_ElasticRatioOfStresses) {
   const TypeParam dt = TypeParam(1e-3);
   const std::vector<Gradient<TypeParam>> press{{TypeParam(-10), 0, 0, 0, 0, 0, 0, 0, 0}};
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    const auto strain = probe.trial({Symmetric<TypeParam>{}}, press, dt);
-    EXPECT_NEAR(strain[0][0], std::log1p(-0.01), 0.01 * kTolerance<TypeParam>) << probe.name();
-    const auto stress = probe.stress(strain)[0];
-    EXPECT_NEAR(stress[3] / stress[0], 0.3 / 0.7, 10 * kTolerance<TypeParam>) << probe.name();
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    const auto strain = rig.trial({Symmetric<TypeParam>{}}, press, dt);
+    EXPECT_NEAR(strain[0][0], std::log1p(-0.01), 0.01 * kTolerance<TypeParam>) << rig.name();
+    const auto stress = rig.stress(strain)[0];
+    EXPECT_NEAR(stress[3] / stress[0], 0.3 / 0.7, 10 * kTolerance<TypeParam>) << rig.name();
   }
 }
 

@@ -2,7 +2,7 @@
 // velocity, and the interpolation alone.
 #include <gtest/gtest.h>
 
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 namespace {

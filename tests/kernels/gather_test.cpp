@@ -2,7 +2,7 @@
 // reference.
 #include <gtest/gtest.h>
 
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 namespace {
@@ -161,7 +161,7 @@ TYPED_TEST(Gather, ArenaFullOfNan_LoadedRowsOnly_IsNotContaminated) {
       const auto expected = reference_gather(particles, transfer, full);
       for (const Target target : supported_targets()) {
         Arena<TypeParam> arena(kArenaValues, std::numeric_limits<TypeParam>::quiet_NaN());
-        const auto rows = reach_of(particles, transfer.stencil).rows;
+        const auto rows = touched_by(particles, transfer.stencil).rows;
         transfer.stencil_kernel<TypeParam>(target).load_arena(arena.data(), rows, blocks);
         expect_near(gather(target, particles, transfer, arena), expected, transfer,
                     what(transfer, target, particles.count));

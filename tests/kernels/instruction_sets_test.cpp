@@ -3,10 +3,10 @@
 #include <cstring>
 
 #include "kernels/effect/volume_correction.h"
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 #include "tests/kernels/node_blocks.h"
 #include "tests/kernels/tangent_samples.h"
-#include "tests/kernels/yield_probe.h"
+#include "tests/kernels/yield_rig.h"
 
 namespace repose {
 namespace {
@@ -121,7 +121,7 @@ TYPED_TEST(InstructionSets, EveryStencilAndTransfer_BlocksOfNodes_SameBits) {
 
 template <class Material, class Real>
 void expect_same_material() {
-  using Probe = MaterialProbe<Material, Real>;
+  using Rig = MaterialRig<Material, Real>;
   std::vector<Symmetric<Real>> strains = random_strains<Real>(4003, 1.0, 1100);
   for (const auto& strain : strains_of_all_sizes<Real>(4003, 1e-12, 1101)) strains.push_back(strain);
   std::vector<Gradient<Real>> gradients(strains.size());
@@ -130,8 +130,8 @@ void expect_same_material() {
     const double size = samples.power_of_ten(-9, 0.5);
     for (Real& entry : gradient) entry = static_cast<Real>(size * samples.uniform(-1, 1));
   }
-  const typename Probe::Constants constants(typename Material::Parameters{});
-  const Probe avx2(constants, Target::kAvx2), avx512(constants, Target::kAvx512);
+  const typename Rig::Constants constants(typename Material::Parameters{});
+  const Rig avx2(constants, Target::kAvx2), avx512(constants, Target::kAvx512);
   const auto trial = avx2.trial(strains, gradients, Real(0.5));
   EXPECT_TRUE(same_bits(trial, avx512.trial(strains, gradients, Real(0.5)))) << "trial";
   EXPECT_TRUE(same_bits(avx2.return_map(trial), avx512.return_map(trial))) << "projection";
@@ -176,16 +176,16 @@ TYPED_TEST(InstructionSets, ShapesOfYielding_SameBits) {
   const HenckyConstants<Real> elastic(golden_sand().elasticity);
   std::vector<Real> yield_slope[2], trace[2];
   std::vector<Symmetric<Real>> cut[2], projected[2];
-  typename YieldProbe<Real>::Surface surface[2];
+  typename YieldRig<Real>::Surface surface[2];
   for (int set = 0; set < 2; ++set) {
-    const YieldProbe<Real> probe(kBoth[set]);
-    yield_slope[set] = probe.harden(q, {Real(0.6), Real(0.16), Real(0.2), Real(0.17), {}, Real(3.25)});
+    const YieldRig<Real> rig(kBoth[set]);
+    yield_slope[set] = rig.harden(q, {Real(0.6), Real(0.16), Real(0.2), Real(0.17), {}, Real(3.25)});
     yield_slope[set] =
-        probe.strengthen(strains, cohesion, {Real(0.7), Real(0.3), Real(1e-4)}, Real(1e-4), yield_slope[set]);
+        rig.strengthen(strains, cohesion, {Real(0.7), Real(0.3), Real(1e-4)}, Real(1e-4), yield_slope[set]);
     surface[set] = {yield_slope[set], cohesion, dilatancy};
-    projected[set] = probe.return_map(strains, surface[set]);
+    projected[set] = rig.return_map(strains, surface[set]);
     trace[set] = q;
-    cut[set] = probe.cut_tension(strains, elastic, Real(30), trace[set]);
+    cut[set] = rig.cut_tension(strains, elastic, Real(30), trace[set]);
   }
   EXPECT_TRUE(same_bits(yield_slope[0], yield_slope[1]) && same_bits(projected[0], projected[1]));
   EXPECT_TRUE(same_bits(surface[0].plastic, surface[1].plastic));

@@ -2,7 +2,7 @@
 // goes by eigenvalues throughout.
 #include "kernels/reference/material.h"
 
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 namespace {
@@ -65,9 +65,9 @@ TYPED_TEST(MaterialReference, Trial_StrainsAndStepsOfAllSizes_Agrees) {
   const auto expected =
       through(nullptr, strains, gradients, false, [](const auto& in) { reference::trial<TypeParam>(in); });
   // b of a strain of 1 spans a factor of e^4, which the least strain pays for.
-  for (const auto& probe : default_probes<Hencky, TypeParam>()) {
-    expect_near(probe.trial(strains, gradients, TypeParam(0.125)), expected, 50 * kTolerance<TypeParam>,
-                probe.name());
+  for (const auto& rig : default_rigs<Hencky, TypeParam>()) {
+    expect_near(rig.trial(strains, gradients, TypeParam(0.125)), expected, 50 * kTolerance<TypeParam>,
+                rig.name());
   }
 }
 
@@ -76,8 +76,8 @@ TYPED_TEST(MaterialReference, DruckerPragerProjection_StrainsOfAllSizes_Agrees) 
   const DruckerPragerConstants<TypeParam> constants(golden_sand());
   const auto expected = through(&constants, strains, std::vector<Gradient<TypeParam>>(kCount), false,
                                 [](const auto& in) { reference::return_map_drucker_prager<TypeParam>(in); });
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    expect_near(probe.return_map(strains), expected, kTolerance<TypeParam>, probe.name());
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    expect_near(rig.return_map(strains), expected, kTolerance<TypeParam>, rig.name());
   }
 }
 
@@ -86,13 +86,13 @@ TYPED_TEST(MaterialReference, Stress_OfSandAndSolid_Agrees) {
   const HenckyConstants<TypeParam> elastic(golden_sand().elasticity);
   const auto expected = through(nullptr, strains, std::vector<Gradient<TypeParam>>(kCount), true,
                                 [&](const auto& in) { reference::stress<TypeParam>(elastic, in); });
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    expect_near(probe.stress(strains), expected, 1e6 * kTolerance<TypeParam>, probe.name());
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    expect_near(rig.stress(strains), expected, 1e6 * kTolerance<TypeParam>, rig.name());
   }
   HenckyParameters solid;
   solid.elasticity = golden_sand().elasticity;
-  for (const auto& probe : probes<Hencky, TypeParam>(solid)) {
-    expect_near(probe.stress(strains), expected, 1e6 * kTolerance<TypeParam>, probe.name());
+  for (const auto& rig : rigs<Hencky, TypeParam>(solid)) {
+    expect_near(rig.stress(strains), expected, 1e6 * kTolerance<TypeParam>, rig.name());
   }
 }
 
@@ -104,8 +104,8 @@ TYPED_TEST(MaterialReference, NeoHookeanStress_StrainsOfAllSizes_Agrees) {
   const auto expected = through(nullptr, strains, std::vector<Gradient<TypeParam>>(kCount), true,
                                 [&](const auto& in) { reference::stress<TypeParam>(elastic, in); });
   // Pa, where b of a strain of 1 is up to e^4.
-  for (const auto& probe : probes<NeoHookean, TypeParam>(rubber)) {
-    expect_near(probe.stress(strains), expected, 50e6 * kTolerance<TypeParam>, probe.name());
+  for (const auto& rig : rigs<NeoHookean, TypeParam>(rubber)) {
+    expect_near(rig.stress(strains), expected, 50e6 * kTolerance<TypeParam>, rig.name());
   }
 }
 

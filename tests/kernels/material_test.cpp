@@ -1,7 +1,7 @@
 // Repose tests: what every material of the list must keep: finite results, no preferred direction, an
 // idempotent projection, energy that the stress is the slope of, and the same answer in float and in double. A
 // new material is tested here by being in the list.
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 namespace {
@@ -43,10 +43,10 @@ Gradient<Real> rounded_gradient(const ExactMatrix& m) {
 }
 
 /// One step of a material: trial, projection, and the stress of it.
-template <class Probe, class Real>
-auto step(const Probe& probe, const std::vector<Symmetric<Real>>& strains,
+template <class Rig, class Real>
+auto step(const Rig& rig, const std::vector<Symmetric<Real>>& strains,
           const std::vector<Gradient<Real>>& gradients) {
-  return probe.return_map(probe.trial(strains, gradients, Real(1)));
+  return rig.return_map(rig.trial(strains, gradients, Real(1)));
 }
 
 template <class Material, class Real>
@@ -55,12 +55,12 @@ void expect_finite() {
   const auto strains = random_strains<Real>(kCount, sizeof(Real) == 4 ? 2.0 : 3.0, 71);
   auto gradients = random_gradients<Real>(kCount, 3.0, 72);  // also turns particles inside out
   for (std::size_t k = 0; k < kCount; k += 3) gradients[k] = {};
-  for (const auto& probe : default_probes<Material, Real>()) {
-    const auto strain = step(probe, strains, gradients);
-    const auto stress = probe.stress(strain);
+  for (const auto& rig : default_rigs<Material, Real>()) {
+    const auto strain = step(rig, strains, gradients);
+    const auto stress = rig.stress(strain);
     for (std::size_t k = 0; k < kCount; ++k) {
       for (int entry = 0; entry < 6; ++entry) {
-        ASSERT_TRUE(std::isfinite(strain[k][entry]) && std::isfinite(stress[k][entry])) << probe.name();
+        ASSERT_TRUE(std::isfinite(strain[k][entry]) && std::isfinite(stress[k][entry])) << rig.name();
       }
     }
   }
@@ -75,17 +75,17 @@ TYPED_TEST(EveryMaterial, Step_AnyFiniteInput_IsFinite) {
 /// it.
 TYPED_TEST(EveryMaterial, Step_NanOrInfinityInAnyEntry_StaysVisible) {
   using Limits = std::numeric_limits<double>;
-  for (const auto& probe : default_probes<TypeParam, double>()) {
+  for (const auto& rig : default_rigs<TypeParam, double>()) {
     for (const double bad : {Limits::quiet_NaN(), Limits::infinity()}) {
       for (int entry = 0; entry < 15; ++entry) {
         std::vector<Symmetric<double>> strains(5, {0.1, 0.01, 0, 0.2, 0, 0.1});
         std::vector<Gradient<double>> gradients(5, Gradient<double>{0.1, 0.2, 0, 0.1, 0, 0, 0, 0, 0.1});
         (entry < 6 ? strains[2][entry] : gradients[2][entry - 6]) = bad;
-        const auto strain = step(probe, strains, gradients);
+        const auto strain = step(rig, strains, gradients);
         for (std::size_t p = 0; p < 5; ++p) {
           const bool finite =
               std::all_of(strain[p].begin(), strain[p].end(), [](double x) { return std::isfinite(x); });
-          EXPECT_EQ(finite, p != 2) << probe.name() << ", entry " << entry << ", particle " << p;
+          EXPECT_EQ(finite, p != 2) << rig.name() << ", entry " << entry << ", particle " << p;
         }
       }
     }
@@ -110,20 +110,20 @@ void expect_objective(double bound) {
     const ExactMatrix moved = q * (ExactMatrix::Identity() + g) - ExactMatrix::Identity();
     then_turned.push_back(rounded_gradient<Real>(moved));
   }
-  for (const auto& probe : default_probes<Material, Real>()) {
-    const auto plain = step(probe, strains, gradients);
-    const auto turned_before = step(probe, turned_strains, turned_gradients);
-    const auto turned_after = step(probe, strains, then_turned);
-    const auto stress = probe.stress(plain), turned_stress = probe.stress(turned_before);
+  for (const auto& rig : default_rigs<Material, Real>()) {
+    const auto plain = step(rig, strains, gradients);
+    const auto turned_before = step(rig, turned_strains, turned_gradients);
+    const auto turned_after = step(rig, strains, then_turned);
+    const auto stress = rig.stress(plain), turned_stress = rig.stress(turned_before);
     for (std::size_t k = 0; k < kCount; ++k) {
       const auto in_new_frame = [&](const Symmetric<Real>& a) -> ExactMatrix {
         return turns[k] * exact(a) * turns[k].transpose();
       };
       const double scale = largest_entry(exact(stress[k])) + 1e-3;
-      ASSERT_LE(largest_entry(exact(turned_before[k]) - in_new_frame(plain[k])), bound) << probe.name();
-      ASSERT_LE(largest_entry(exact(turned_after[k]) - in_new_frame(plain[k])), bound) << probe.name();
+      ASSERT_LE(largest_entry(exact(turned_before[k]) - in_new_frame(plain[k])), bound) << rig.name();
+      ASSERT_LE(largest_entry(exact(turned_after[k]) - in_new_frame(plain[k])), bound) << rig.name();
       ASSERT_LE(largest_entry(exact(turned_stress[k]) - in_new_frame(stress[k])), 1e3 * bound * scale)
-          << probe.name();
+          << rig.name();
     }
   }
 }
@@ -136,12 +136,12 @@ TYPED_TEST(EveryMaterial, Step_TurnedFrameOrTurnedMotion_TurnsTheResult) {
 template <class Material, class Real>
 void expect_idempotent(double bound) {
   const auto strains = strains_of_all_sizes<Real>(4003, 1e-9, 76);
-  for (const auto& probe : default_probes<Material, Real>()) {
-    auto own = probe.initial_own(strains.size());
-    const auto once = probe.return_map(strains, own), twice = probe.return_map(once, own);
+  for (const auto& rig : default_rigs<Material, Real>()) {
+    auto own = rig.initial_own(strains.size());
+    const auto once = rig.return_map(strains, own), twice = rig.return_map(once, own);
     for (std::size_t k = 0; k < strains.size(); ++k) {
       const double size = largest_entry(exact(strains[k]));
-      ASSERT_LE(largest_entry(exact(twice[k]) - exact(once[k])), bound * size) << probe.name();
+      ASSERT_LE(largest_entry(exact(twice[k]) - exact(once[k])), bound * size) << rig.name();
     }
   }
 }
@@ -161,12 +161,12 @@ TYPED_TEST(EveryMaterial, Step_FloatAgainstDouble_Agree) {
     std::copy(strains[k].begin(), strains[k].end(), wide_strains[k].begin());
     std::copy(gradients[k].begin(), gradients[k].end(), wide_gradients[k].begin());
   }
-  const auto reference = default_probes<TypeParam, double>()[0];
+  const auto reference = default_rigs<TypeParam, double>()[0];
   const auto expected = step(reference, wide_strains, wide_gradients);
-  for (const auto& probe : default_probes<TypeParam, float>()) {
-    const auto strain = step(probe, strains, gradients);
+  for (const auto& rig : default_rigs<TypeParam, float>()) {
+    const auto strain = step(rig, strains, gradients);
     for (std::size_t k = 0; k < kCount; ++k) {
-      ASSERT_LE(largest_entry(exact(strain[k]) - exact(expected[k])), 1e-4) << probe.name();
+      ASSERT_LE(largest_entry(exact(strain[k]) - exact(expected[k])), 1e-4) << rig.name();
     }
   }
 }
@@ -185,10 +185,10 @@ void expect_trial(double bound) {
     expected.push_back(
         of_eigenvalues(map * b * map.transpose(), [](long double x) { return std::log(x) / 2; }));
   }
-  for (const auto& probe : default_probes<Material, Real>()) {
-    const auto trial = probe.trial(strains, gradients, kStep);
+  for (const auto& rig : default_rigs<Material, Real>()) {
+    const auto trial = rig.trial(strains, gradients, kStep);
     for (std::size_t k = 0; k < kCount; ++k) {
-      ASSERT_LE(largest_entry(exact(trial[k]) - expected[k]), bound) << probe.name();
+      ASSERT_LE(largest_entry(exact(trial[k]) - expected[k]), bound) << rig.name();
     }
   }
 }
@@ -202,15 +202,15 @@ TYPED_TEST(EveryMaterial, Trial_RandomStep_IsTheStrainOfTheMovedState) {
 TYPED_TEST(EveryMaterial, Stress_HasAnEnergy) {
   const auto strains = random_strains<double>(101, 0.1, 79);
   constexpr double kStep = 1e-4;
-  for (const auto& probe : default_probes<TypeParam, double>()) {
-    EXPECT_EQ(probe.stress({Symmetric<double>{}})[0], Symmetric<double>{}) << probe.name();
+  for (const auto& rig : default_rigs<TypeParam, double>()) {
+    EXPECT_EQ(rig.stress({Symmetric<double>{}})[0], Symmetric<double>{}) << rig.name();
     for (const auto& strain : strains) {
       double slope[6][6], largest = 0;
       for (int k = 0; k < 6; ++k) {
         auto more = strain, less = strain;
         more[k] += kStep;
         less[k] -= kStep;
-        const auto stress = probe.stress({more, less});
+        const auto stress = rig.stress({more, less});
         for (int i = 0; i < 6; ++i) {
           // An off-diagonal entry stands for two places of the tensor.
           const bool off = i == 1 || i == 2 || i == 4;
@@ -219,7 +219,7 @@ TYPED_TEST(EveryMaterial, Stress_HasAnEnergy) {
         }
       }
       for (int i = 0; i < 6; ++i) {
-        for (int k = 0; k < i; ++k) ASSERT_NEAR(slope[i][k], slope[k][i], 1e-6 * largest) << probe.name();
+        for (int k = 0; k < i; ++k) ASSERT_NEAR(slope[i][k], slope[k][i], 1e-6 * largest) << rig.name();
       }
     }
   }
@@ -233,8 +233,8 @@ void expect_slope_of_energy(const typename Material::Parameters& parameters) {
     return parameters.energy_density(strain);
   };
   const auto strains = random_strains<double>(101, 0.5, 80);
-  for (const auto& probe : probes<Material, double>(parameters)) {
-    const auto stress = probe.stress(strains);
+  for (const auto& rig : rigs<Material, double>(parameters)) {
+    const auto stress = rig.stress(strains);
     for (std::size_t k = 0; k < strains.size(); ++k) {
       for (int entry = 0; entry < 6; ++entry) {
         auto more = strains[k], less = strains[k];
@@ -242,7 +242,7 @@ void expect_slope_of_energy(const typename Material::Parameters& parameters) {
         less[entry] -= 1e-5;
         const bool off = entry == 1 || entry == 2 || entry == 4;
         const double slope = (energy(more) - energy(less)) / (more[entry] - less[entry]) / (off ? 2 : 1);
-        ASSERT_NEAR(stress[k][entry], slope, 1e-8 * largest_entry(exact(stress[k]))) << probe.name();
+        ASSERT_NEAR(stress[k][entry], slope, 1e-8 * largest_entry(exact(stress[k]))) << rig.name();
       }
     }
   }

@@ -1,7 +1,7 @@
 // Repose tests: numbers of the neo-Hookean law worked out by hand, its first and second order beside Hencky's,
 // its energy from strains of 1e-12 to stretches of 1e-4, and the speed of waves that the time step's margin
 // rests on.
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 namespace {
@@ -34,20 +34,20 @@ void expect_stress(const Symmetric<Real>& stress, const Symmetric<double>& expec
 /// A stretch s along x: tau_xx = s^2 - 1 + ln s, sideways ln s.
 TYPED_TEST(NeoHookeanGolden, Stress_UniaxialStretch_AsByHand) {
   const double ln2 = std::numbers::ln2;
-  for (const auto& probe : probes<NeoHookean, TypeParam>(unit())) {
-    const auto stress = probe.stress({{TypeParam(ln2), 0, 0, 0, 0, 0}, {TypeParam(-ln2), 0, 0, 0, 0, 0}});
-    expect_stress(stress[0], {3 + ln2, 0, 0, ln2, 0, ln2}, probe.name());
-    expect_stress(stress[1], {-0.75 - ln2, 0, 0, -ln2, 0, -ln2}, probe.name());
+  for (const auto& rig : rigs<NeoHookean, TypeParam>(unit())) {
+    const auto stress = rig.stress({{TypeParam(ln2), 0, 0, 0, 0, 0}, {TypeParam(-ln2), 0, 0, 0, 0, 0}});
+    expect_stress(stress[0], {3 + ln2, 0, 0, ln2, 0, ln2}, rig.name());
+    expect_stress(stress[1], {-0.75 - ln2, 0, 0, -ln2, 0, -ln2}, rig.name());
   }
 }
 
 /// Simple shear by g keeps the volume: tau = g (x y + y x) + g^2 x x, which Hencky's law does not give.
 TYPED_TEST(NeoHookeanGolden, Stress_SimpleShear_AsByHand) {
-  for (const auto& probe : probes<NeoHookean, TypeParam>(unit())) {
+  for (const auto& rig : rigs<NeoHookean, TypeParam>(unit())) {
     for (const double g : {0.0625, 1.0}) {
       const auto strain =
-          probe.trial({Symmetric<TypeParam>{}}, {{0, TypeParam(g), 0, 0, 0, 0, 0, 0, 0}}, TypeParam(1));
-      expect_stress(probe.stress(strain)[0], {g * g, g, 0, 0, 0, 0}, probe.name());
+          rig.trial({Symmetric<TypeParam>{}}, {{0, TypeParam(g), 0, 0, 0, 0, 0, 0, 0}}, TypeParam(1));
+      expect_stress(rig.stress(strain)[0], {g * g, g, 0, 0, 0, 0}, rig.name());
     }
   }
 }
@@ -55,8 +55,8 @@ TYPED_TEST(NeoHookeanGolden, Stress_SimpleShear_AsByHand) {
 TYPED_TEST(NeoHookeanGolden, Stress_HalfTheSize_AsByHand) {
   const double third = -0.75 - 3 * std::numbers::ln2;
   const TypeParam e = static_cast<TypeParam>(-std::numbers::ln2);
-  for (const auto& probe : probes<NeoHookean, TypeParam>(unit())) {
-    expect_stress(probe.stress({{e, 0, 0, e, 0, e}})[0], {third, 0, 0, third, 0, third}, probe.name());
+  for (const auto& rig : rigs<NeoHookean, TypeParam>(unit())) {
+    expect_stress(rig.stress({{e, 0, 0, e, 0, e}})[0], {third, 0, 0, third, 0, third}, rig.name());
   }
 }
 
@@ -64,15 +64,15 @@ TYPED_TEST(NeoHookeanGolden, Stress_HalfTheSize_AsByHand) {
 TEST(NeoHookean, Stress_SmallStrain_IsHenckyAndItsSquare) {
   HenckyParameters solid;
   solid.elasticity = unit().elasticity;
-  const auto hencky = probes<Hencky, double>(solid)[0];
-  for (const auto& probe : probes<NeoHookean, double>(unit())) {
+  const auto hencky = rigs<Hencky, double>(solid)[0];
+  for (const auto& rig : rigs<NeoHookean, double>(unit())) {
     for (const double size : {1e-3, 1e-5}) {
       Samples samples(91);
       const ExactMatrix eps = size * turned(ExactVector(1.0, -0.5, 0.25), samples);
       const auto strain = rounded<double>(eps);
-      const ExactMatrix difference = exact(probe.stress({strain})[0]) - exact(hencky.stress({strain})[0]);
+      const ExactMatrix difference = exact(rig.stress({strain})[0]) - exact(hencky.stress({strain})[0]);
       EXPECT_LE(largest_entry(difference - 2 * eps * eps), 1.5 * size * size * size + 1e-15 * size)
-          << probe.name() << ", " << size;
+          << rig.name() << ", " << size;
     }
   }
 }
@@ -82,8 +82,8 @@ TEST(NeoHookeanEnergy, StretchAndShear_AsByHand) {
   EXPECT_NEAR(energy({ln2, 0, 0, 0, 0, 0}), 1.5 - ln2 + ln2 * ln2 / 2, 1e-15);
   EXPECT_NEAR(energy({-ln2, 0, 0, -ln2, 0, -ln2}), -1.125 + 3 * ln2 + 4.5 * ln2 * ln2, 4e-15);
   for (const double g : {1e-6, 0.0625, 1.0}) {
-    const auto strain = probes<NeoHookean, double>(unit())[0].trial({Symmetric<double>{}},
-                                                                    {{0, g, 0, 0, 0, 0, 0, 0, 0}}, 1.0)[0];
+    const auto strain =
+        rigs<NeoHookean, double>(unit())[0].trial({Symmetric<double>{}}, {{0, g, 0, 0, 0, 0, 0, 0, 0}}, 1.0)[0];
     EXPECT_NEAR(energy(strain), g * g / 2, 1e-13 * g * g);
   }
 }
@@ -136,19 +136,19 @@ TEST(NeoHookeanEnergy, StrainThatIsNone_IsNotFinite) {
 
 /// rho c^2 of a pressure wave along x: how fast tau - tau G^T, which is the change of P F^T, grows with the
 /// stretching G of the matter as it lies.
-double wave_modulus(const MaterialProbe<NeoHookean, double>& probe, const Symmetric<double>& strain) {
+double wave_modulus(const MaterialRig<NeoHookean, double>& rig, const Symmetric<double>& strain) {
   constexpr double kStep = 1e-5;
-  const auto moved = probe.trial({strain, strain}, {{kStep}, {-kStep}}, 1.0);
-  const auto stress = probe.stress({moved[0], moved[1], strain});
+  const auto moved = rig.trial({strain, strain}, {{kStep}, {-kStep}}, 1.0);
+  const auto stress = rig.stress({moved[0], moved[1], strain});
   return (stress[0][0] - stress[1][0]) / (2 * kStep) - stress[2][0];
 }
 
 TEST(NeoHookeanSound, AnyStretch_FollowsTheFormula) {
-  for (const auto& probe : probes<NeoHookean, double>(unit())) {
+  for (const auto& rig : rigs<NeoHookean, double>(unit())) {
     for (const double x : {-1.0, -0.1, 0.0, 0.7}) {
       for (const double y : {-0.5, 0.0, 0.4}) {
         const double expected = 1 + std::exp(2 * x) + 1 - (x + y);
-        EXPECT_NEAR(wave_modulus(probe, {x, 0, 0, y, 0, 0}), expected, 1e-7) << probe.name() << x << y;
+        EXPECT_NEAR(wave_modulus(rig, {x, 0, 0, y, 0, 0}), expected, 1e-7) << rig.name() << x << y;
       }
     }
   }
@@ -160,14 +160,14 @@ TEST(NeoHookeanSound, TwentiethOfTheVolumeToStretchOf2_6_NotTwiceThatOfRest) {
   for (const double nu : {0.0, 0.3, 0.45, 0.49}) {
     NeoHookeanParameters rubber = unit();
     rubber.elasticity.poisson_ratio = nu;
-    const auto probe = probes<NeoHookean, double>(rubber)[0];
-    const double rest = wave_modulus(probe, {});
+    const auto rig = rigs<NeoHookean, double>(rubber)[0];
+    const double rest = wave_modulus(rig, {});
     EXPECT_NEAR(rest, std::pow(rubber.elasticity.sound_speed(), 2), 1e-6 * rest);
     for (const auto& strain : {Symmetric<double>{-3, 0, 0, 0, 0, 0}, Symmetric<double>{-1, 0, 0, -1, 0, -1},
                                Symmetric<double>{0, 0, 0, -3, 0, 0}, Symmetric<double>{0.95, 0, 0, 0, 0, 0}}) {
-      EXPECT_LE(wave_modulus(probe, strain), 4 * rest) << nu << ", strain " << strain[0] << ' ' << strain[3];
+      EXPECT_LE(wave_modulus(rig, strain), 4 * rest) << nu << ", strain " << strain[0] << ' ' << strain[3];
     }
-    EXPECT_EQ(wave_modulus(probe, {1.0, 0, 0, 0, 0, 0}) > 4 * rest, nu == 0.0);
+    EXPECT_EQ(wave_modulus(rig, {1.0, 0, 0, 0, 0, 0}) > 4 * rest, nu == 0.0);
   }
 }
 

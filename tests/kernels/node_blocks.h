@@ -1,7 +1,7 @@
 // Repose tests: a block of nodes with its 26 neighbours, addressed by node coordinates from -4 to 7 an axis.
 #pragma once
 
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 

@@ -4,7 +4,7 @@
 
 #include "tests/kernels/samples.h"
 #include "tests/kernels/tangent_samples.h"
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 namespace {

@@ -1,7 +1,7 @@
 // Repose tests: moving particles: positions, and the maxima from which the next step size follows.
 #include <gtest/gtest.h>
 
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 namespace {

@@ -1,7 +1,7 @@
 // Repose tests: what the return map of sand must be for any strain: on the cone or inside it, idempotent, of
 // the same volume, dissipating, continuous at the tip. Strains span six decades and lie within an ulp of the
 // tip, where cancellation would show.
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 namespace {
@@ -48,18 +48,18 @@ std::vector<DruckerPragerParameters> sands() {
 TYPED_TEST(ReturnMap, Project_StretchesOneDecade_OnTheConeAndIdempotent) {
   const auto strains = random_strains<TypeParam>(20011, 1.0, 51);
   const DruckerPragerParameters sand = golden_sand();
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-    const auto once = probe.return_map(strains), twice = probe.return_map(once);
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+    const auto once = rig.return_map(strains), twice = rig.return_map(once);
     double overshoot = 0, change = 0;
     for (std::size_t k = 0; k < strains.size(); ++k) {
       const Invariants after = invariants(once[k]);
       overshoot = std::max(overshoot, static_cast<double>(after.deviator + cone(sand) * after.trace));
       change = std::max(change, largest_entry(exact(twice[k]) - exact(once[k])));
     }
-    this->RecordProperty(std::string("overshoot_") + probe.name(),
+    this->RecordProperty(std::string("overshoot_") + rig.name(),
                          std::to_string(overshoot / kOvershoot<TypeParam>));
-    EXPECT_LE(overshoot, kOvershoot<TypeParam>) << probe.name();
-    EXPECT_LE(change, kOvershoot<TypeParam>) << probe.name();
+    EXPECT_LE(overshoot, kOvershoot<TypeParam>) << rig.name();
+    EXPECT_LE(change, kOvershoot<TypeParam>) << rig.name();
   }
 }
 
@@ -67,11 +67,11 @@ TYPED_TEST(ReturnMap, Project_StretchesOneDecade_OnTheConeAndIdempotent) {
 TYPED_TEST(ReturnMap, Project_StretchesSixDecades_FiniteAndCloseToTheCone) {
   const auto strains = random_strains<TypeParam>(20011, 6.0, 52);
   const double bound = sizeof(TypeParam) == 4 ? 1e-4 : 1e-7;
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    const auto once = probe.return_map(strains);
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    const auto once = rig.return_map(strains);
     for (const auto& strain : once) {
       const Invariants after = invariants(strain);
-      ASSERT_LE(static_cast<double>(after.deviator + cone(golden_sand()) * after.trace), bound) << probe.name();
+      ASSERT_LE(static_cast<double>(after.deviator + cone(golden_sand()) * after.trace), bound) << rig.name();
     }
   }
 }
@@ -81,16 +81,16 @@ TYPED_TEST(ReturnMap, Project_AnyStrain_KeepsTheTraceOrOpens) {
   const auto strains = strains_of_all_sizes<TypeParam>(20011, 1e-9, 53);
   const double eps = std::numeric_limits<TypeParam>::epsilon();
   for (const DruckerPragerParameters& sand : sands()) {
-    for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      const auto once = probe.return_map(strains);
+    for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+      const auto once = rig.return_map(strains);
       for (std::size_t k = 0; k < strains.size(); ++k) {
         const double before = static_cast<double>(invariants(strains[k]).trace);
         const double after = static_cast<double>(invariants(once[k]).trace);
         const double size = largest_entry(exact(strains[k]));
         if (before < -4 * eps * size) {
-          ASSERT_NEAR(after, before, 8 * eps * size) << probe.name() << " phi " << sand.friction_angle;
+          ASSERT_NEAR(after, before, 8 * eps * size) << rig.name() << " phi " << sand.friction_angle;
         } else if (before > 4 * eps * size) {
-          ASSERT_EQ(once[k], Symmetric<TypeParam>{}) << probe.name() << " phi " << sand.friction_angle;
+          ASSERT_EQ(once[k], Symmetric<TypeParam>{}) << rig.name() << " phi " << sand.friction_angle;
         }
       }
     }
@@ -103,12 +103,12 @@ TEST(ReturnMapVolume, Project_StrainsOfSand_KeepTheTraceTo1em15) {
   for (auto& strain : strains) {
     for (double& entry : strain) entry *= 0.05;
   }
-  for (const auto& probe : probes<DruckerPrager, double>(golden_sand())) {
-    const auto once = probe.return_map(strains);
+  for (const auto& rig : rigs<DruckerPrager, double>(golden_sand())) {
+    const auto once = rig.return_map(strains);
     for (std::size_t k = 0; k < strains.size(); ++k) {
       const double before = static_cast<double>(invariants(strains[k]).trace);
       if (before >= 0) continue;
-      ASSERT_NEAR(static_cast<double>(invariants(once[k]).trace), before, 1e-15) << probe.name();
+      ASSERT_NEAR(static_cast<double>(invariants(once[k]).trace), before, 1e-15) << rig.name();
     }
   }
 }
@@ -117,14 +117,14 @@ TEST(ReturnMapVolume, Project_StrainsOfSand_KeepTheTraceTo1em15) {
 TYPED_TEST(ReturnMap, Project_AnyStrain_PlasticWorkIsNotNegative) {
   const auto strains = strains_of_all_sizes<TypeParam>(20011, 1e-6, 55);
   for (const DruckerPragerParameters& sand : sands()) {
-    for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      const auto once = probe.return_map(strains), stress = probe.stress(once);
+    for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+      const auto once = rig.return_map(strains), stress = rig.stress(once);
       for (std::size_t k = 0; k < strains.size(); ++k) {
         const ExactMatrix tau = exact(stress[k]);
         const ExactMatrix flow = exact(strains[k]) - exact(once[k]);
         const double work = static_cast<double>(tau.cwiseProduct(flow).sum());
         const double scale = largest_entry(tau) * largest_entry(exact(strains[k]));
-        ASSERT_GE(work, -(sizeof(TypeParam) == 4 ? 1e-5 : 1e-9) * scale) << probe.name();
+        ASSERT_GE(work, -(sizeof(TypeParam) == 4 ? 1e-5 : 1e-9) * scale) << rig.name();
       }
     }
   }
@@ -146,10 +146,10 @@ TYPED_TEST(ReturnMap, Project_AtTheTip_IsContinuous) {
     }
   }
   const double stiffness = golden_sand().elasticity.youngs_modulus;
-  for (const auto& probe : probes<DruckerPrager, TypeParam>(golden_sand())) {
-    for (const auto& stress : probe.stress(probe.return_map(strains))) {
+  for (const auto& rig : rigs<DruckerPrager, TypeParam>(golden_sand())) {
+    for (const auto& stress : rig.stress(rig.return_map(strains))) {
       EXPECT_LE(largest_entry(exact(stress)), (sizeof(TypeParam) == 4 ? 1e-5 : 1e-14) * stiffness)
-          << probe.name();
+          << rig.name();
     }
   }
 }
@@ -158,11 +158,11 @@ TYPED_TEST(ReturnMap, Project_AtTheTip_IsContinuous) {
 TYPED_TEST(ReturnMap, Project_AnyStrain_CarriesNoTension) {
   const auto strains = strains_of_all_sizes<TypeParam>(20011, 1e-9, 57);
   for (const DruckerPragerParameters& sand : sands()) {
-    for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      for (const auto& strain : probe.return_map(strains)) {
+    for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+      for (const auto& strain : rig.return_map(strains)) {
         ASSERT_LE(invariants(strain).trace,
                   4 * std::numeric_limits<TypeParam>::epsilon() * largest_entry(exact(strain)))
-            << probe.name();
+            << rig.name();
       }
     }
   }
@@ -174,9 +174,9 @@ TYPED_TEST(ReturnMap, Project_NearlyIncompressible_IsFinite) {
     DruckerPragerParameters sand = golden_sand();
     sand.friction_angle = angle;
     sand.elasticity.poisson_ratio = 0.4999;
-    for (const auto& probe : probes<DruckerPrager, TypeParam>(sand)) {
-      for (const auto& stress : probe.stress(probe.return_map(strains))) {
-        for (const TypeParam entry : stress) ASSERT_TRUE(std::isfinite(entry)) << probe.name();
+    for (const auto& rig : rigs<DruckerPrager, TypeParam>(sand)) {
+      for (const auto& stress : rig.stress(rig.return_map(strains))) {
+        for (const TypeParam entry : stress) ASSERT_TRUE(std::isfinite(entry)) << rig.name();
       }
     }
   }

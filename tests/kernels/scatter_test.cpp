@@ -2,7 +2,7 @@
 // reference.
 #include <gtest/gtest.h>
 
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 namespace {
@@ -21,29 +21,29 @@ std::string what(const TransferCase& transfer, Target target, std::size_t count)
 template <class Real>
 struct Scattered {
   Arena<Real> arena = Arena<Real>(kArenaValues, Real(0));
-  Reach reach;
+  Touched touched;
 };
 
 template <class Real>
 Scattered<Real> scatter(Target target, Particles<Real>& particles, const TransferCase& transfer) {
   Scattered<Real> result;
   const auto in = particles.scatter_input(transfer);
-  result.reach.runs = transfer.kernel<Real>(target).scatter(in, result.arena.data(), result.reach.rows);
+  result.touched.segments = transfer.kernel<Real>(target).scatter(in, result.arena.data(), result.touched.rows);
   EXPECT_TRUE(particles.canaries_alive()) << transfer.name() << ", " << target_name(target);
   return result;
 }
 
-/// Every instruction set against the reference, in values, rows and runs.
+/// Every instruction set against the reference, in values, rows and segments.
 template <class Real>
 void expect_reference(Particles<Real>& particles, const TransferCase& transfer) {
   const Arena<double> expected = reference_scatter(particles, transfer);
-  const Reach reach = reach_of(particles, transfer.stencil);
+  const Touched touched = touched_by(particles, transfer.stencil);
   for (const Target target : supported_targets()) {
     const auto result = scatter(target, particles, transfer);
     const std::string name = what(transfer, target, particles.count);
     expect_near(result.arena, expected, kTransferTolerance<Real>, name);
-    EXPECT_EQ(result.reach.rows, reach.rows) << name;
-    EXPECT_EQ(result.reach.runs, reach.runs) << name;
+    EXPECT_EQ(result.touched.rows, touched.rows) << name;
+    EXPECT_EQ(result.touched.segments, touched.segments) << name;
   }
 }
 
@@ -93,16 +93,16 @@ TYPED_TEST(Scatter, OnCellFaces_WithinAnUlp_MatchTheReference) {
 TYPED_TEST(Scatter, UsedArena_IsAddedTo_AndOtherRowsAreLeftAlone) {
   for (const TransferCase& transfer : all_cases()) {
     auto particles = random_particles<TypeParam>(3, Order::kScattered, 130, transfer.stencil);
-    const auto reach = reach_of(particles, transfer.stencil);
+    const auto touched = touched_by(particles, transfer.stencil);
     for (const Target target : supported_targets()) {
       const auto fresh = scatter(target, particles, transfer);
       Arena<TypeParam> arena(kArenaValues, TypeParam(1));
       std::uint64_t rows = std::uint64_t{1} << 63;
       const auto in = particles.scatter_input(transfer);
       transfer.kernel<TypeParam>(target).scatter(in, arena.data(), rows);
-      EXPECT_EQ(rows, reach.rows | std::uint64_t{1} << 63) << what(transfer, target, 3);
+      EXPECT_EQ(rows, touched.rows | std::uint64_t{1} << 63) << what(transfer, target, 3);
       for (std::size_t k = 0; k < kArenaNodes * kNodeValues; ++k) {
-        const bool touched = (reach.rows >> (k / kArenaRow) & 1) != 0;
+        const bool touched = (touched.rows >> (k / kArenaRow) & 1) != 0;
         const double expected = touched ? 1.0 + double{fresh.arena[k]} : 1.0;
         const double rounding = touched ? 4.0 * std::numeric_limits<TypeParam>::epsilon() : 0.0;
         ASSERT_NEAR(arena[k], expected, rounding) << what(transfer, target, 3) << ' ' << k;

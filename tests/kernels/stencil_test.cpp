@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/kernels/functions.h"
-#include "tests/kernels/transfer_probe.h"
+#include "tests/kernels/transfer_rig.h"
 
 namespace repose {
 namespace {

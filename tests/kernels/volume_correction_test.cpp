@@ -1,7 +1,7 @@
 // Repose tests: the volume that sand gains where it opens is given back when it closes (Tampubolon et al.
 // 2017): the numbers of two worked steps, and the invariant tr H + vc' = tr eps + vc of every step.
 #include "kernels/effect/volume_correction.h"
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 namespace {

@@ -1,7 +1,7 @@
 // Repose tests: the kernels that shape how sand yields, on every instruction set, against the reference. Bounds
 // are a number of roundings of the largest number that a sum runs through; what is divided afterwards divides
 // them too. Squares of strains vanish below the root of the smallest number, so no norm is sharper than that.
-#include "tests/kernels/yield_probe.h"
+#include "tests/kernels/yield_rig.h"
 
 namespace repose {
 namespace {
@@ -30,7 +30,7 @@ class YieldReference : public testing::Test {
   static Numbers some_cohesion(std::size_t count, std::uint64_t seed) {
     return numbers(count, seed, [](Samples& s) { return s.index(3) == 0 ? 0.0 : s.power_of_ten(-8, 0); });
   }
-  static typename YieldProbe<Real>::Surface some_surface(std::size_t count) {
+  static typename YieldRig<Real>::Surface some_surface(std::size_t count) {
     return {numbers(count, 402,
                     [](Samples& s) {
                       const std::size_t kind = s.index(8);
@@ -58,16 +58,16 @@ TYPED_TEST(YieldReference, Harden_EveryMatchingAndShear_Agrees) {
       const HardeningConstants<Real> law{
           Real(degrees[0] * kRadians), Real(degrees[1] * kRadians),         Real(degrees[2]),
           Real(degrees[3] * kRadians), static_cast<ConeMatching>(matching), Real(3.25)};
-      const auto expected = YieldProbe<Real>().harden(q, law);
-      for (const auto& probe : yield_probes<Real>()) {
-        const auto yield_slope = probe.harden(q, law);
+      const auto expected = YieldRig<Real>().harden(q, law);
+      for (const auto& rig : yield_rigs<Real>()) {
+        const auto yield_slope = rig.harden(q, law);
         for (std::size_t p = 0; p < q.size(); ++p) {
           // h2 q itself is rounded, and so is 1 - exp(-h2 q), of which nothing is left beyond 40.
           const double gone = std::min(double{law.h2} * q[p], 40.0);
           const double angle = law.h0 + (law.h1 / law.h2 * gone + law.h3) * (1.0 + gone * std::exp(-gone));
           const double bound =
               8 * this->kRounding * law.per_cone_slope * angle + std::numeric_limits<Real>::min();
-          ASSERT_NEAR(yield_slope[p], expected[p], bound) << probe.name() << ", q " << q[p];
+          ASSERT_NEAR(yield_slope[p], expected[p], bound) << rig.name() << ", q " << q[p];
         }
       }
     }
@@ -82,9 +82,9 @@ TYPED_TEST(YieldReference, Quicken_StrainsStepsAndLawsOfAllSizes_Agrees) {
   for (const double dt : {1e-7, 1e-4, 1e-2}) {
     for (const double inertia : {1e-6, 1e-4, 1e-1}) {
       const RateConstants<Real> law{Real(0.7), Real(0.279), Real(inertia)};
-      const auto expected = YieldProbe<Real>().strengthen(strains, cohesion, law, Real(dt), before);
-      for (const auto& probe : yield_probes<Real>()) {
-        const auto yield_slope = probe.strengthen(strains, cohesion, law, Real(dt), before);
+      const auto expected = YieldRig<Real>().strengthen(strains, cohesion, law, Real(dt), before);
+      for (const auto& rig : yield_rigs<Real>()) {
+        const auto yield_slope = rig.strengthen(strains, cohesion, law, Real(dt), before);
         std::size_t higher = 0;
         for (std::size_t p = 0; p < yield_slope.size(); ++p) {
           const double pressed = std::fabs(static_cast<double>(exact(strains[p]).trace()));
@@ -92,10 +92,10 @@ TYPED_TEST(YieldReference, Quicken_StrainsStepsAndLawsOfAllSizes_Agrees) {
           const double bound =
               8 * this->kRounding * (sum / pressed + before[p]) + 4 * this->vanishing() / pressed;
           if (pressed > 0.0) {
-            ASSERT_NEAR(yield_slope[p], expected[p], bound) << probe.name() << ", particle " << p;
+            ASSERT_NEAR(yield_slope[p], expected[p], bound) << rig.name() << ", particle " << p;
           }
-          ASSERT_GE(yield_slope[p], before[p]) << probe.name();
-          ASSERT_LE(yield_slope[p], (before[p] + law.rise) * (1 + this->kRounding)) << probe.name();
+          ASSERT_GE(yield_slope[p], before[p]) << rig.name();
+          ASSERT_LE(yield_slope[p], (before[p] + law.rise) * (1 + this->kRounding)) << rig.name();
           higher += yield_slope[p] > before[p] ? 1 : 0;
         }
         EXPECT_GT(higher, yield_slope.size() / 20) << "few yield, so little is compared";
@@ -115,16 +115,16 @@ TYPED_TEST(YieldReference, CutTension_StrainsAndLimitsOfAllSizes_Agrees) {
     const HenckyConstants<Real> elastic(elasticity);
     for (const double limit : {0.0, 3.0, 3e3, 3e5}) {
       auto expected_trace = before;
-      const auto expected = YieldProbe<Real>().cut_tension(strains, elastic, Real(limit), expected_trace);
-      for (const auto& probe : yield_probes<Real>()) {
+      const auto expected = YieldRig<Real>().cut_tension(strains, elastic, Real(limit), expected_trace);
+      for (const auto& rig : yield_rigs<Real>()) {
         auto trace = before;
-        const auto cut = probe.cut_tension(strains, elastic, Real(limit), trace);
+        const auto cut = rig.cut_tension(strains, elastic, Real(limit), trace);
         for (std::size_t p = 0; p < cut.size(); ++p) {
           const double bound = 24 * this->kRounding * this->size(strains[p]) + 2 * this->vanishing();
           ASSERT_LE(largest_entry(exact(cut[p]) - exact(expected[p])), bound)
-              << probe.name() << ", particle " << p << ", limit " << limit;
+              << rig.name() << ", particle " << p << ", limit " << limit;
           ASSERT_NEAR(trace[p], expected_trace[p], 3 * bound + 2 * this->kRounding * std::fabs(before[p]))
-              << probe.name() << ", particle " << p << ", limit " << limit;
+              << rig.name() << ", particle " << p << ", limit " << limit;
         }
       }
     }
@@ -135,16 +135,16 @@ TYPED_TEST(YieldReference, ShapedProjection_SurfacesOfAllKinds_Agrees) {
   using Real = TypeParam;
   const auto strains = strains_for_yielding<Real>(this->kCount, 410);
   auto expected = this->some_surface(strains.size());
-  const auto expected_strains = YieldProbe<Real>().return_map(strains, expected);
-  for (const auto& probe : yield_probes<Real>()) {
+  const auto expected_strains = YieldRig<Real>().return_map(strains, expected);
+  for (const auto& rig : yield_rigs<Real>()) {
     auto surface = this->some_surface(strains.size());
-    const auto projected = probe.return_map(strains, surface);
+    const auto projected = rig.return_map(strains, surface);
     std::size_t at_the_tip = 0, yielding = 0;
     for (std::size_t p = 0; p < projected.size(); ++p) {
       const double steep = (1.0 + surface.yield_slope[p]) * (1.0 + 3.0 * surface.dilatancy[p]);
       const double bound =
           steep * (this->kRoundings * (this->size(strains[p]) + surface.cohesion[p]) + 2 * this->vanishing());
-      const auto where = [&] { return std::string(probe.name()) + ", particle " + std::to_string(p); };
+      const auto where = [&] { return std::string(rig.name()) + ", particle " + std::to_string(p); };
       ASSERT_LE(largest_entry(exact(projected[p]) - exact(expected_strains[p])), bound) << where();
       ASSERT_NEAR(surface.plastic[p], expected.plastic[p], 2 * bound) << where();
       yielding += expected.sheared[p] > 0 ? 1 : 0;
@@ -158,8 +158,8 @@ TYPED_TEST(YieldReference, ShapedProjection_SurfacesOfAllKinds_Agrees) {
       ASSERT_NEAR(surface.sheared[p], expected.sheared[p], 2 * bound) << where();
       ASSERT_NEAR(surface.dilated[p], expected.dilated[p], 2 * bound) << where();
     }
-    EXPECT_LT(at_the_tip, projected.size() / 100) << probe.name();
-    EXPECT_GT(yielding, projected.size() / 10) << probe.name();
+    EXPECT_LT(at_the_tip, projected.size() / 100) << rig.name();
+    EXPECT_GT(yielding, projected.size() / 10) << rig.name();
   }
 }
 
@@ -168,7 +168,7 @@ TYPED_TEST(YieldReference, ShapedProjection_OfScalars_Agrees) {
   using Real = TypeParam;
   const auto strains = strains_for_yielding<Real>(this->kCount, 411);
   auto surface = this->some_surface(strains.size());
-  const auto expected = YieldProbe<Real>().return_map(strains, surface);
+  const auto expected = YieldRig<Real>().return_map(strains, surface);
   for (std::size_t p = 0; p < strains.size(); ++p) {
     const auto& s = strains[p];
     const HWY_NAMESPACE::Sym3<Real> strain{s[0], s[1], s[2], s[3], s[4], s[5]};
@@ -194,7 +194,7 @@ TYPED_TEST(YieldReference, NotANumber_StaysWhereItIs) {
   const HardeningConstants<Real> hardening{Real(0.6), Real(0.16), Real(0.2), Real(0.17), {}, Real(3.25)};
   const auto cohesion = this->some_cohesion(64, 413);
   const auto is_nan = [](Real x) { return std::isnan(x); };
-  for (const auto& probe : yield_probes<Real>()) {
+  for (const auto& rig : yield_rigs<Real>()) {
     for (std::size_t k = 0; k < 6; ++k) {
       const std::size_t at = 7 * k + 3;
       auto broken = strains;
@@ -203,25 +203,25 @@ TYPED_TEST(YieldReference, NotANumber_StaysWhereItIs) {
       std::vector<Real> trace(64), trace_of_broken(64), yield_slope(64, Real(1));
       const auto expect_lone = [&](const auto& of_broken, const auto& all, const char* what) {
         for (std::size_t p = 0; p < 64; ++p) {
-          EXPECT_TRUE(p == at || of_broken[p] == all[p]) << what << ' ' << probe.name() << ' ' << p;
+          EXPECT_TRUE(p == at || of_broken[p] == all[p]) << what << ' ' << rig.name() << ' ' << p;
         }
       };
-      const auto projected = probe.return_map(broken, surface_of_broken);
-      EXPECT_TRUE(std::ranges::any_of(projected[at], is_nan)) << probe.name() << ' ' << k;
-      expect_lone(projected, probe.return_map(strains, surface), "projection");
-      const auto cut = probe.cut_tension(broken, elastic, Real(100), trace_of_broken);
-      EXPECT_TRUE(std::ranges::any_of(cut[at], is_nan)) << probe.name() << ' ' << k;
-      expect_lone(cut, probe.cut_tension(strains, elastic, Real(100), trace), "cut");
-      expect_lone(probe.strengthen(broken, cohesion, rate, Real(1e-4), yield_slope),
-                  probe.strengthen(strains, cohesion, rate, Real(1e-4), yield_slope), "rate");
+      const auto projected = rig.return_map(broken, surface_of_broken);
+      EXPECT_TRUE(std::ranges::any_of(projected[at], is_nan)) << rig.name() << ' ' << k;
+      expect_lone(projected, rig.return_map(strains, surface), "projection");
+      const auto cut = rig.cut_tension(broken, elastic, Real(100), trace_of_broken);
+      EXPECT_TRUE(std::ranges::any_of(cut[at], is_nan)) << rig.name() << ' ' << k;
+      expect_lone(cut, rig.cut_tension(strains, elastic, Real(100), trace), "cut");
+      expect_lone(rig.strengthen(broken, cohesion, rate, Real(1e-4), yield_slope),
+                  rig.strengthen(strains, cohesion, rate, Real(1e-4), yield_slope), "rate");
       yield_slope[at] = nan;
-      EXPECT_TRUE(std::isnan(probe.strengthen(strains, cohesion, rate, Real(1e-4), yield_slope)[at]))
-          << probe.name();
+      EXPECT_TRUE(std::isnan(rig.strengthen(strains, cohesion, rate, Real(1e-4), yield_slope)[at]))
+          << rig.name();
       std::vector<Real> q(64, Real(0.5)), q_of_broken = q;
       q_of_broken[at] = nan;
-      const auto hard = probe.harden(q_of_broken, hardening);
-      EXPECT_TRUE(std::isnan(hard[at])) << probe.name();
-      expect_lone(hard, probe.harden(q, hardening), "hardening");
+      const auto hard = rig.harden(q_of_broken, hardening);
+      EXPECT_TRUE(std::isnan(hard[at])) << rig.name();
+      expect_lone(hard, rig.harden(q, hardening), "hardening");
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "tests/engine/geometry/mesh_files.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <ostream>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

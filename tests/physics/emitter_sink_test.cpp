@@ -10,7 +10,7 @@
 #include <map>
 #include <numbers>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

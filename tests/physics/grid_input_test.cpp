@@ -3,7 +3,7 @@
 
 #include "tests/engine/geometry/grid_writer.h"
 #include "tests/engine/geometry/mesh_files.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

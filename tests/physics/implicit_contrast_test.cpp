@@ -2,7 +2,7 @@
 // the other: every step is solved at once, and energy stays bounded as in implicit_energy_test.cpp.
 #include <gtest/gtest.h>
 
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 namespace repose {
 namespace {

@@ -3,7 +3,7 @@
 // gradients bound long steps too.
 #include <gtest/gtest.h>
 
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 namespace repose {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 namespace repose {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 namespace repose {
 namespace {

@@ -2,7 +2,7 @@
 // version is in implicit_converge_test.cpp.
 #include <gtest/gtest.h>
 
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 namespace repose {
 namespace {

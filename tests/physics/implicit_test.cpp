@@ -12,7 +12,7 @@
 #include "engine/compiler/compiler.h"
 #include "engine/step/stepper.h"
 #include "tests/file_bytes.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

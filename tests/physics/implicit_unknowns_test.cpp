@@ -7,7 +7,7 @@
 
 #include "engine/compiler/compiler.h"
 #include "engine/step/stepper.h"
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 namespace repose {
 namespace {
@@ -126,7 +126,7 @@ TEST(ImplicitUnknowns, OfTwoBodiesTenKilometresApart_AreThoseOfTwoSideBySide) {
   EXPECT_EQ(far.memory.blocks, near.memory.blocks);
   EXPECT_EQ(far.memory.active_nodes, near.memory.active_nodes);
   const auto bytes = [](const MemoryUse& memory) {
-    return static_cast<double>(memory.particle_bytes + memory.order_bytes + memory.grid_bytes);
+    return static_cast<double>(memory.particle_bytes + memory.sort_bytes + memory.grid_bytes);
   };
   report("two_unknowns", static_cast<double>(near.counts.front()));
   report("two_blocks", static_cast<double>(near.memory.blocks));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

@@ -2,7 +2,7 @@
 // whose slope rises with the angle of internal friction.
 #include <gtest/gtest.h>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

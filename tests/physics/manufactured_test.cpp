@@ -13,7 +13,7 @@
 #include "engine/simulation/points.h"
 #include "engine/state/state_hash.h"
 #include "engine/step/stepper.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -313,7 +313,7 @@ TEST(ManufacturedBox, StepThatIsRefused_LeavesParticles) {
   compiled->plan.limits = {10.0, 1e6, 1e6, 1e6, 1e6, compiled->plan.limits.sets};
   Stepper<double> stepper(std::move(compiled->plan), 1);
   compiled->state.counters.time = 0.1;
-  EXPECT_TRUE(stepper.order_if_due(compiled->state));
+  EXPECT_TRUE(stepper.sort_if_due(compiled->state));
   const std::uint64_t before = state_hash(compiled->state);
   EXPECT_FALSE(stepper.step(compiled->state, std::numeric_limits<double>::infinity()).accepted);
   EXPECT_EQ(state_hash(compiled->state), before);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -176,7 +176,7 @@ TEST(MovingSolid, TenCellsPerFrame_IsSteppedAndThrowsNothing) {
 }
 
 TEST(MovingSolid, PistonFromAfar_MeetsWhatHasNotMoved) {
-  // Twenty cells away at first, and nothing moves that would bring an order event: only its own way can tell.
+  // Twenty cells away at first, and nothing moves that would bring an sort event: only its own way can tell.
   const auto simulation = simulate(scene_of(kPlate, {R"json(colliders=[{"name": "piston",
         "shape": {"type": "box", "lower": [-0.6, -0.1, -0.1], "upper": [-0.4, 0.3, 0.3]},
         "motion": {"keys": [{"time": 0}, {"time": 1, "translation": [1, 0, 0]}]}}])json"}),

@@ -7,7 +7,7 @@
 #include "engine/plan/frame_clock.h"
 #include "engine/state/state_hash.h"
 #include "engine/step/stepper.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -80,7 +80,7 @@ Forced force(int sound_steps, double max_step) {
   plan.limits.cfl = plan.limits.sound = plan.limits.isolated = plan.limits.strain = 1e6;
   plan.limits.max_step = max_step;
   Stepper<double> forced(std::move(plan), 2);
-  EXPECT_TRUE(forced.order_if_due(result.state));
+  EXPECT_TRUE(forced.sort_if_due(result.state));
   result.before = state_hash(result.state);
   result.report = forced.step(result.state, kNoFrame);
   return result;

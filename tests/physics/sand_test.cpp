@@ -2,7 +2,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "tests/physics/element_probe.h"
+#include "tests/physics/element_rig.h"
 
 namespace repose {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -95,10 +95,10 @@ TEST(Sleep, BallThatFallsFarAway_LeavesTheBedAsleep) {
   const auto simulation = simulate(bed({"sleep={}", "bodies.ball.shape.center=[0.32, 40, 0.32]"}, kBall));
   const std::size_t sand = simulate(bed({}))->particles();
   ASSERT_TRUE(run_until(*simulation, 0.8));
-  const std::int64_t orders = simulation->counters().orders;
+  const std::int64_t sorts = simulation->counters().sorts;
   EXPECT_EQ(simulation->particles_asleep(), sand);
   ASSERT_TRUE(run_until(*simulation, 1.0));
-  EXPECT_GT(simulation->counters().orders, orders) << "the control: there were such events";
+  EXPECT_GT(simulation->counters().sorts, sorts) << "the control: there were such events";
   EXPECT_EQ(simulation->particles_asleep(), sand);
 }
 

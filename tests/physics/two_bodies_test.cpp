@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -32,7 +32,7 @@ Cost cost(const std::vector<std::string>& overrides) {
   EXPECT_TRUE(run_steps(*simulation, 100));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const MemoryUse memory = simulation->memory();
-  const auto bytes = static_cast<double>(memory.particle_bytes + memory.order_bytes + memory.grid_bytes);
+  const auto bytes = static_cast<double>(memory.particle_bytes + memory.sort_bytes + memory.grid_bytes);
   return {bytes / static_cast<double>(simulation->particles()), seconds, simulation->particles()};
 }
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {

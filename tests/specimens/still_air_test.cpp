@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/kernels/samples.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 #include "tests/specimens/kernels/still_air.h"
 
 namespace repose {

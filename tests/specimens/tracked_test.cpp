@@ -1,7 +1,7 @@
 // Repose tests: the tracked specimen, whose trial state is its own: F is the product of all steps, in kernels
 // and in the engine, where an implicit step evaluates many trial states and makes one.
-#include "tests/kernels/material_probe.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/kernels/material_rig.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -10,9 +10,9 @@ using HWY_NAMESPACE::Tracked;
 
 TEST(Tracked, ManySteps_KeepTheProductOfAll) {
   constexpr std::size_t kCount = 37;
-  for (const auto& probe : default_probes<Tracked, double>()) {
+  for (const auto& rig : default_rigs<Tracked, double>()) {
     Samples samples(95);
-    auto own = probe.initial_own(kCount);
+    auto own = rig.initial_own(kCount);
     std::vector<Symmetric<double>> strains(kCount);
     std::vector<ExactMatrix> expected(kCount, ExactMatrix::Identity());
     for (int step = 0; step < 8; ++step) {
@@ -25,11 +25,11 @@ TEST(Tracked, ManySteps_KeepTheProductOfAll) {
         }
         expected[p] = (map * expected[p]).eval();
       }
-      strains = probe.trial(strains, gradients, 0.5, own);
+      strains = rig.trial(strains, gradients, 0.5, own);
     }
     for (std::size_t p = 0; p < kCount; ++p) {
       for (std::size_t k = 0; k < 9; ++k)
-        ASSERT_NEAR(own[k][p], static_cast<double>(expected[p](int(k) / 3, int(k) % 3)), 1e-13) << probe.name();
+        ASSERT_NEAR(own[k][p], static_cast<double>(expected[p](int(k) / 3, int(k) % 3)), 1e-13) << rig.name();
     }
   }
 }

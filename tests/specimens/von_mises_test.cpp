@@ -1,7 +1,7 @@
 // Repose tests: the von Mises specimen: numbers worked out by hand, its reference, and a bar in the engine that
 // flows as the law says, in explicit steps and in implicit ones.
-#include "tests/kernels/material_probe.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/kernels/material_rig.h"
+#include "tests/physics/physics_rig.h"
 #include "tests/specimens/von_mises_reference.h"
 
 namespace repose {
@@ -22,17 +22,17 @@ VonMisesParameters solid(double hardening) {
 /// 1e-3/sqrt(3). With H = 3 mu half of what exceeds it flows.
 TEST(VonMises, ShearBeyondItsStrength_ReturnsByHand) {
   for (const double hardening : {0.0, 1.2e6}) {
-    for (const auto& probe : probes<VonMises, double>(solid(hardening))) {
-      auto own = probe.initial_own(2);
+    for (const auto& rig : rigs<VonMises, double>(solid(hardening))) {
+      auto own = rig.initial_own(2);
       const double g = 2e-3, limit = 1e-3 / std::sqrt(3.0);
       const auto back =
-          probe.return_map({{0.01, g, 0, 0.01, 0, 0.01}, {0.01, 0.5 * limit, 0, 0.01, 0, 0.01}}, own);
+          rig.return_map({{0.01, g, 0, 0.01, 0, 0.01}, {0.01, 0.5 * limit, 0, 0.01, 0, 0.01}}, own);
       const double flows = (hardening == 0.0 ? 1.0 : 0.5) * (g - limit);
-      EXPECT_NEAR(back[0][1], g - flows, 1e-15) << probe.name();
-      EXPECT_NEAR(back[0][0], 0.01, 1e-16) << probe.name() << ": flow keeps the volume";
-      EXPECT_NEAR(own[0][0], std::sqrt(2.0 / 3.0) * std::sqrt(2.0) * flows, 1e-15) << probe.name();
-      EXPECT_EQ(back[1][1], 0.5 * limit) << probe.name();
-      EXPECT_EQ(own[0][1], 0.0) << probe.name();
+      EXPECT_NEAR(back[0][1], g - flows, 1e-15) << rig.name();
+      EXPECT_NEAR(back[0][0], 0.01, 1e-16) << rig.name() << ": flow keeps the volume";
+      EXPECT_NEAR(own[0][0], std::sqrt(2.0 / 3.0) * std::sqrt(2.0) * flows, 1e-15) << rig.name();
+      EXPECT_EQ(back[1][1], 0.5 * limit) << rig.name();
+      EXPECT_EQ(own[0][1], 0.0) << rig.name();
     }
   }
 }
@@ -40,10 +40,10 @@ TEST(VonMises, ShearBeyondItsStrength_ReturnsByHand) {
 TEST(VonMises, StrainsOfAllSizes_AgreeWithTheReference) {
   const VonMisesParameters parameters = solid(2e5);
   const auto strains = strains_of_all_sizes<double>(2003, 1e-6, 91);
-  for (const auto& probe : probes<VonMises, double>(parameters)) {
-    auto own = probe.initial_own(strains.size()), expected_own = own;
+  for (const auto& rig : rigs<VonMises, double>(parameters)) {
+    auto own = rig.initial_own(strains.size()), expected_own = own;
     for (std::size_t p = 0; p < strains.size(); ++p) own[0][p] = expected_own[0][p] = 1e-3 * double(p % 7);
-    const auto back = probe.return_map(strains, own);
+    const auto back = rig.return_map(strains, own);
     std::vector<double> channel[6];
     MaterialInput<double> in{};
     in.count = strains.size();
@@ -54,8 +54,8 @@ TEST(VonMises, StrainsOfAllSizes_AgreeWithTheReference) {
     }
     reference::return_map_von_mises(parameters, in);
     for (std::size_t p = 0; p < strains.size(); ++p) {
-      for (std::size_t k = 0; k < 6; ++k) ASSERT_NEAR(back[p][k], channel[k][p], 1e-14) << probe.name();
-      ASSERT_NEAR(own[0][p], expected_own[0][p], 1e-14) << probe.name();
+      for (std::size_t k = 0; k < 6; ++k) ASSERT_NEAR(back[p][k], channel[k][p], 1e-14) << rig.name();
+      ASSERT_NEAR(own[0][p], expected_own[0][p], 1e-14) << rig.name();
     }
   }
 }

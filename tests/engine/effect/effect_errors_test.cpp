@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/compiler/compiler.h"
-#include "tests/engine/reading/scene_errors_probe.h"
+#include "tests/engine/reading/scene_errors_rig.h"
 
 namespace repose {
 namespace {

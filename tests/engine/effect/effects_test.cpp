@@ -55,7 +55,7 @@ void expect_nothing_asked_for(const Scene& scene) {
   EXPECT_THAT(plan.speeds, IsEmpty());
   EXPECT_THAT(plan.disturbances, IsEmpty());
   EXPECT_FALSE(plan.sleep);
-  expect_core(plan.order);
+  expect_core(plan.sort);
   expect_core(plan.nodes);
   EXPECT_EQ(plan.nodes.size(), 1u) << "p/m";
   for (const auto& passes : plan.scatter) expect_core(passes);

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "tests/engine/geometry/geometry_probe.h"
+#include "tests/engine/geometry/geometry_rig.h"
 #include "tests/engine/geometry/mesh_files.h"
-#include "tests/engine/reading/scene_errors_probe.h"
+#include "tests/engine/reading/scene_errors_rig.h"
 
 namespace repose {
 namespace {

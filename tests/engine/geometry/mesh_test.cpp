@@ -7,7 +7,7 @@
 
 #include "engine/geometry/mesh_reader.h"
 #include "engine/geometry/mesh_solid.h"
-#include "tests/engine/geometry/geometry_probe.h"
+#include "tests/engine/geometry/geometry_rig.h"
 #include "tests/engine/geometry/mesh_files.h"
 
 namespace repose {

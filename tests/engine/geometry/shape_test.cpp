@@ -9,7 +9,7 @@
 
 #include "engine/geometry/mesh_solid.h"
 #include "engine/geometry/outline.h"
-#include "tests/engine/geometry/geometry_probe.h"
+#include "tests/engine/geometry/geometry_rig.h"
 
 namespace repose {
 namespace {

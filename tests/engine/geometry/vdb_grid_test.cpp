@@ -9,7 +9,7 @@
 #include "engine/compiler/compiler.h"
 #include "engine/reading/reader.h"
 #include "engine/simulation/simulation.h"
-#include "tests/engine/geometry/geometry_probe.h"
+#include "tests/engine/geometry/geometry_rig.h"
 #include "tests/engine/geometry/grid_writer.h"
 #include "tests/engine/geometry/mesh_files.h"
 

@@ -112,8 +112,8 @@ TEST(StepPlan, ChannelOfTheSet_IsThereFromTheStart) {
 
 TEST(StepPlan, OrderPasses_ProvideForAll) {
   Sound sound;
-  sound.plan.order.push_back(
-      sound.plan.passes().after_order({"wells"}, reads(kTopology), writes(kWells), kNothing));
+  sound.plan.sort.push_back(
+      sound.plan.passes().after_sort({"wells"}, reads(kTopology), writes(kWells), kNothing));
   sound.add_node_pass("drain", reads(kWells), writes());
   sound.gather().add({"wet"}, reads(kWells), writes(), kNothing);
   EXPECT_EQ(sound.fault(), "");
@@ -229,7 +229,7 @@ Names compile(const std::vector<std::string>& overrides) {
   EXPECT_TRUE(compiled) << (compiled ? "" : compiled.error().text());
   Names names;
   names.events = names_of(compiled->plan.events);
-  names.order = names_of(compiled->plan.order);
+  names.order = names_of(compiled->plan.sort);
   names.prepare = names_of(compiled->plan.prepare);
   names.nodes = names_of(compiled->plan.nodes);
   for (const std::string& name : names_of(compiled->plan.applied)) names.nodes.push_back(name);

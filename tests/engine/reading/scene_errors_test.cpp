@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "engine/compiler/compiler.h"
-#include "tests/engine/reading/scene_errors_probe.h"
+#include "tests/engine/reading/scene_errors_rig.h"
 
 namespace repose {
 namespace {

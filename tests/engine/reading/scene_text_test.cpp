@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/engine/reading/scene_errors_probe.h"
+#include "tests/engine/reading/scene_errors_rig.h"
 
 namespace repose {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/reading/reader.h"
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 
 namespace repose {
 namespace {

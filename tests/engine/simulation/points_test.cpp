@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 
 namespace repose {
 namespace {

@@ -1,7 +1,7 @@
 // Repose tests: the Krylov solvers against dense factorizations and against what they claim to minimise.
 #include <type_traits>
 
-#include "tests/engine/solve/krylov_probe.h"
+#include "tests/engine/solve/krylov_rig.h"
 
 namespace repose {
 namespace {

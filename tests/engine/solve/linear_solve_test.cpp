@@ -1,5 +1,5 @@
 // Repose tests: how Krylov solvers end where they do not converge, and the ladder of a solve.
-#include "tests/engine/solve/krylov_probe.h"
+#include "tests/engine/solve/krylov_rig.h"
 
 namespace repose {
 namespace {

@@ -76,7 +76,7 @@ struct DenseProblem {
     step = -(1.0 - left_over) * a.fullPivLu().solve(left);
     return {1, !linear_solver_fails};
   }
-  double reach(const Vector& step, double length) { return longest(evaluated, step, length); }
+  double longest_step(const Vector& step, double length) { return longest(evaluated, step, length); }
   static void take(const Vector& v, double length, const Vector& step, Vector& to) { to = v + length * step; }
 };
 

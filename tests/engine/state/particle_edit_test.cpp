@@ -10,7 +10,7 @@
 #include <map>
 #include <random>
 
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 #include "engine/state/state_hash.h"
 
 namespace repose {
@@ -62,7 +62,7 @@ class Editing {
     order();
   }
 
-  void order() { order_.order(state_, threads_, {}); }
+  void order() { sort_.sort(state_, threads_, {}); }
 
   /// Where a particle is, in parts, its block and its drift taken together; axes that repeat are wrapped.
   Index3 place(const ParticleSet<float>& set, std::size_t occupied, std::size_t p) const {
@@ -110,7 +110,7 @@ class Editing {
     const auto applied = apply_edit(std::move(edit), state_, {});
     ASSERT_TRUE(applied) << applied.error().text();
     EXPECT_EQ(state_.ledger.next_id, next_);
-    EXPECT_EQ(state_.counters.order_due, 1);
+    EXPECT_EQ(state_.counters.sort_due, 1);
     for (const auto& set : state_.sets) {
       ASSERT_EQ(set.begin.size(), state_.grid.occupied_blocks().size() + 1);
       EXPECT_EQ(set.begin.back(), set.count);
@@ -120,7 +120,7 @@ class Editing {
   /// The state against one made from scratch of what the model holds.
   void expect_fresh() {
     State<float> fresh = state_of(model_, topology_);
-    BlockOrder<float>().order(fresh, threads_, {});
+    BlockSort<float>().sort(fresh, threads_, {});
     ASSERT_TRUE(std::equal(state_.grid.blocks().begin(), state_.grid.blocks().end(),
                            fresh.grid.blocks().begin(), fresh.grid.blocks().end()));
     for (std::size_t k = 0; k < 2; ++k) {
@@ -153,7 +153,7 @@ class Editing {
   Topology topology_;
   Model model_;
   State<float> state_;
-  BlockOrder<float> order_;
+  BlockSort<float> sort_;
   std::uint32_t next_ = 0;
 };
 

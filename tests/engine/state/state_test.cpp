@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 #include "engine/state/state_hash.h"
 
 namespace repose {
@@ -68,7 +68,7 @@ State<float> make_state(const Making& making) {
 
 void order(State<float>& state, int threads = 2, const Ownership& ownership = {}) {
   Threads pool(threads);
-  BlockOrder<float>().order(state, pool, ownership);
+  BlockSort<float>().sort(state, pool, ownership);
 }
 
 /// Calls visit(set, occupied block, p) for every particle.
@@ -176,7 +176,7 @@ void expect_same_places(const State<float>& state, const std::map<std::uint32_t,
   }
 }
 
-TEST(BlockOrder, FreshParticles_SortedAndWhole) {
+TEST(BlockSort, FreshParticles_SortedAndWhole) {
   State<float> state = make_state({});
   const auto before = places(state);
   order(state);
@@ -184,14 +184,14 @@ TEST(BlockOrder, FreshParticles_SortedAndWhole) {
   expect_same_places(state, before);
 }
 
-TEST(BlockOrder, AnyOrderBefore_SameBits) {
+TEST(BlockSort, AnyOrderBefore_SameBits) {
   State<float> a = make_state({}), b = make_state({.storage_seed = 1}), c = make_state({.storage_seed = 2});
   for (State<float>* state : {&a, &b, &c}) order(*state);
   expect_same(a, b);
   expect_same(a, c);
 }
 
-TEST(BlockOrder, AnyNumberOfThreads_SameBits) {
+TEST(BlockSort, AnyNumberOfThreads_SameBits) {
   State<float> one = make_state({.count = 20000}), two = make_state({.count = 20000}),
                seven = make_state({.count = 20000});
   for (const auto& [state, threads] : {std::pair{&one, 1}, std::pair{&two, 2}, std::pair{&seven, 7}}) {
@@ -203,7 +203,7 @@ TEST(BlockOrder, AnyNumberOfThreads_SameBits) {
   expect_same(one, seven);
 }
 
-TEST(BlockOrder, OrderedTwice_ChangesNothing) {
+TEST(BlockSort, OrderedTwice_ChangesNothing) {
   State<float> once = make_state({}), twice = make_state({});
   order(once);
   order(twice);
@@ -211,7 +211,7 @@ TEST(BlockOrder, OrderedTwice_ChangesNothing) {
   expect_same(once, twice);
 }
 
-TEST(BlockOrder, DriftAcrossFaces_KeepsPlaces) {
+TEST(BlockSort, DriftAcrossFaces_KeepsPlaces) {
   State<float> state = make_state({.count = 5000});
   order(state);
   for (const int cells : {1, 2, 4}) {
@@ -223,7 +223,7 @@ TEST(BlockOrder, DriftAcrossFaces_KeepsPlaces) {
   }
 }
 
-TEST(BlockOrder, ShiftedBlocks_HoldBasesZeroToFour) {
+TEST(BlockSort, ShiftedBlocks_HoldBasesZeroToFour) {
   // The base of an even stencil changes at nodes: blocks shifted by half a cell give its drift the same room on
   // either side.
   for (const Ownership& ownership : {Ownership{1.0, 0.5}, Ownership{0.5, 0.5}, Ownership{1.0, 0.0}}) {
@@ -245,28 +245,28 @@ TEST(BlockOrder, ShiftedBlocks_HoldBasesZeroToFour) {
   }
 }
 
-TEST(BlockOrder, OccupiedBlocksComeAndGo_GridFollows) {
+TEST(BlockSort, OccupiedBlocksComeAndGo_GridFollows) {
   // Three particles of two sets wander; a block exists as long as it holds one, or lies beside one that does.
   State<float> state = make_state({.lower = {1, 1, 1}, .upper = {3, 3, 3}, .count = 3});
   Threads pool(2);
-  BlockOrder<float> block_order;
-  EXPECT_FALSE(block_order.order(state, pool, {})) << "the grid that the particles were placed in";
+  BlockSort<float> block_sort;
+  EXPECT_FALSE(block_sort.sort(state, pool, {})) << "the grid that the particles were placed in";
   ASSERT_EQ(state.grid.occupied_blocks().size(), 1u);
   const auto push = [&](ParticleSet<float>& set, float cells) {
     for (std::size_t p = 0; p < set.count; ++p) set.position[0][p] += cells;
   };
   push(state.sets[0], 4.0f);
-  EXPECT_TRUE(block_order.order(state, pool, {}));
+  EXPECT_TRUE(block_sort.sort(state, pool, {}));
   ASSERT_EQ(state.grid.occupied_blocks().size(), 2u) << "one set stayed";
   push(state.sets[1], 4.0f);
-  EXPECT_TRUE(block_order.order(state, pool, {}));
+  EXPECT_TRUE(block_sort.sort(state, pool, {}));
   ASSERT_EQ(state.grid.occupied_blocks().size(), 1u) << "both sets are in the next block";
   EXPECT_EQ(state.grid.blocks()[static_cast<std::size_t>(state.grid.occupied_blocks()[0])], (Index3{1, 0, 0}));
-  EXPECT_FALSE(block_order.order(state, pool, {}));
+  EXPECT_FALSE(block_sort.sort(state, pool, {}));
   expect_ordered(state);
 }
 
-TEST(BlockOrder, DriftAcrossASeam_FallsOnTheOtherSide) {
+TEST(BlockSort, DriftAcrossASeam_FallsOnTheOtherSide) {
   for (const std::int32_t blocks : {2, 6}) {
     Making making;
     making.topology = {-1, {-1, 0, 0}, {blocks, 0, 0}};
@@ -282,7 +282,7 @@ TEST(BlockOrder, DriftAcrossASeam_FallsOnTheOtherSide) {
   }
 }
 
-TEST(BlockOrder, FlatAxis_StaysInOneLayer) {
+TEST(BlockSort, FlatAxis_StaysInOneLayer) {
   Making making;
   making.topology.flat_axis = 1;
   State<float> state = make_state(making);
@@ -295,7 +295,7 @@ TEST(BlockOrder, FlatAxis_StaysInOneLayer) {
   for (const Index3& block : state.grid.blocks()) EXPECT_EQ(block[1], 0);
 }
 
-TEST(BlockOrder, FarFromTheOrigin_SameBitsButForTheBlocks) {
+TEST(BlockSort, FarFromTheOrigin_SameBitsButForTheBlocks) {
   // A million cells away, as by grid.origin_cells: offsets, cells and colours must not notice.
   State<float> near = make_state({}), far = make_state({.origin = {1000000, -1000000, 8}});
   for (State<float>* state : {&near, &far}) {
@@ -311,7 +311,7 @@ TEST(BlockOrder, FarFromTheOrigin_SameBitsButForTheBlocks) {
     EXPECT_EQ(near.grid.colour(colour).size(), far.grid.colour(colour).size());
 }
 
-TEST(BlockOrder, MillionInOneCell_InSeconds) {
+TEST(BlockSort, MillionInOneCell_InSeconds) {
   Making making{.lower = {1, 1, 1}, .upper = {2, 2, 2}, .count = 500000, .storage_seed = 1};
   State<float> state = make_state(making);
   for (auto& set : state.sets) {

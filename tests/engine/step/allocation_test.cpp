@@ -9,7 +9,7 @@
 
 #include "engine/reading/reader.h"
 #include "engine/simulation/simulation.h"
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
 #define REPOSE_COUNTS_ALLOCATIONS 0
@@ -131,8 +131,8 @@ State<float> cube_of_blocks() {
 TEST_P(Allocation, WarmOrderWithoutNewBlocks_None) {
   State<float> state = cube_of_blocks();
   Threads threads(GetParam());
-  BlockOrder<float> order;
-  order.order(state, threads, {});
+  BlockSort<float> block_sort;
+  block_sort.sort(state, threads, {});
   ParticleSet<float>& set = state.sets[0];
   for (int event = 0; event < 12; ++event) {
     // To and fro by a block along z, but for those whom this would take out of the cube.
@@ -141,7 +141,7 @@ TEST_P(Allocation, WarmOrderWithoutNewBlocks_None) {
       if (z >= 4 && z < 28 && set.id[p] % 3 == 0) set.position[2][p] += event % 2 == 0 ? 4.0f : -4.0f;
     }
     const std::int64_t before = g_allocations;
-    const bool new_blocks = order.order(state, threads, {});
+    const bool new_blocks = block_sort.sort(state, threads, {});
     const std::int64_t allocations = g_allocations - before;
     EXPECT_FALSE(new_blocks);
     if (event >= 4) {

@@ -35,13 +35,13 @@ constexpr std::size_t material_index() {
 }
 
 template <class Material, class Real>
-class MaterialProbe {
+class MaterialRig {
  public:
   using Constants = typename Material::template Constants<Real>;
   using Strains = std::vector<Symmetric<Real>>;
 
   /// Without a target, the scalar templates.
-  MaterialProbe(const Constants& constants, std::optional<Target> target)
+  MaterialRig(const Constants& constants, std::optional<Target> target)
       : constants_(constants), target_(target) {}
 
   const char* name() const { return target_ ? target_name(*target_) : "scalar"; }
@@ -172,16 +172,16 @@ class MaterialProbe {
 
 /// The scalar templates and every instruction set of this machine.
 template <class Material, class Real, class Parameters>
-std::vector<MaterialProbe<Material, Real>> probes(const Parameters& parameters) {
+std::vector<MaterialRig<Material, Real>> rigs(const Parameters& parameters) {
   const typename Material::template Constants<Real> constants(parameters);
-  std::vector<MaterialProbe<Material, Real>> all{{constants, std::nullopt}};
+  std::vector<MaterialRig<Material, Real>> all{{constants, std::nullopt}};
   for (const Target target : supported_targets()) all.emplace_back(constants, target);
   return all;
 }
 
 template <class Material, class Real>
-auto default_probes() {
-  return probes<Material, Real>(typename Material::Parameters{});
+auto default_rigs() {
+  return rigs<Material, Real>(typename Material::Parameters{});
 }
 
 /// The sand of the golden values: E = 3.537e5, nu = 0.3, phi = 30 degrees.

@@ -1,4 +1,4 @@
-#include "tests/physics/implicit_probe.h"
+#include "tests/physics/implicit_rig.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +76,7 @@ double explicit_rise(const std::string& text, std::vector<std::string> overrides
   State<float> state = std::move(compiled->state);
   Stepper<float> stepper(std::move(compiled->plan), 1);
   const auto figures = [&] { return diagnose(scene, compiled->solids, state, stepper.threads()); };
-  if (auto ordered = stepper.order_if_due(state); !ordered) throw std::runtime_error(ordered.error().text());
+  if (auto ordered = stepper.sort_if_due(state); !ordered) throw std::runtime_error(ordered.error().text());
   const Diagnostics start = figures();
   double rise = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < steps; ++k) {

@@ -2,7 +2,7 @@
 // what comes to it, then every channel is moved through one spare. Most particles stay in their block and,
 // within it, in their cell: coordinates are looked at once, in loops that vectorise, and the blocks that keep
 // their order are copied. The grid is built anew only when a block begins or ceases to hold particles.
-#include "engine/state/block_order.h"
+#include "engine/state/block_sort.h"
 
 #include <algorithm>
 #include <cstring>
@@ -75,8 +75,8 @@ void sort_cells(std::uint64_t* keys, const std::uint32_t* ends) {
 }  // namespace
 
 template <class Real>
-void BlockOrder<Real>::classify(const ParticleSet<Real>& set, std::size_t occupied,
-                                const Locator<Real>& locator, Buffers& buffers) const {
+void BlockSort<Real>::classify(const ParticleSet<Real>& set, std::size_t occupied, const Locator<Real>& locator,
+                               Buffers& buffers) const {
   const std::size_t first = set.begin[occupied], last = set.begin[occupied + 1];
   std::uint8_t* const cells = buffers.cell.data();
   locate(set, first, last, locator, cells);
@@ -101,7 +101,7 @@ void BlockOrder<Real>::classify(const ParticleSet<Real>& set, std::size_t occupi
 /// Whether the blocks that hold particles are those that held some before. Few blocks lose particles to others,
 /// so this is not worth threads.
 template <class Real>
-bool BlockOrder<Real>::same_occupied(const State<Real>& state) {
+bool BlockSort<Real>::same_occupied(const State<Real>& state) {
   const std::size_t all = state.grid.occupied_blocks().size();
   weight_.assign(all, 0);
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
@@ -125,7 +125,7 @@ bool BlockOrder<Real>::same_occupied(const State<Real>& state) {
 
 /// Makes the grid of the blocks that hold particles now, and source_ for it.
 template <class Real>
-bool BlockOrder<Real>::update_grid(State<Real>& state) {
+bool BlockSort<Real>::update_grid(State<Real>& state) {
   const bool same = same_occupied(state);
   const std::size_t all = state.grid.occupied_blocks().size();
   old_blocks_.resize(all);
@@ -165,8 +165,8 @@ bool BlockOrder<Real>::update_grid(State<Real>& state) {
 /// Calls visit(first, last) for each stretch of movers of set k that come to a new occupied block.
 template <class Real>
 template <class Visit>
-void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k, std::size_t occupied,
-                                        Visit visit) const {
+void BlockSort<Real>::for_each_arrival(const State<Real>& state, std::size_t k, std::size_t occupied,
+                                       Visit visit) const {
   const auto neighbours = state.grid.neighbours(occupied);
   for (std::size_t n = 0; n < kNeighbours; ++n) {
     // Who goes towards n comes from the other side.
@@ -182,7 +182,7 @@ void BlockOrder<Real>::for_each_arrival(const State<Real>& state, std::size_t k,
 
 /// Gives each new occupied block its share of the range.
 template <class Real>
-void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Threads& threads) {
+void BlockSort<Real>::share_out(const State<Real>& state, std::size_t k, Threads& threads) {
   Buffers& buffers = buffers_[k];
   const std::size_t all = state.grid.occupied_blocks().size();
   std::vector<std::uint32_t>&begin = buffers.begin, &arrivals = buffers.arrivals_begin;
@@ -215,7 +215,7 @@ void BlockOrder<Real>::share_out(const State<Real>& state, std::size_t k, Thread
 
 /// Writes the particles that come to an occupied block, or stay, to the permutation: by cell and then by id.
 template <class Real>
-void BlockOrder<Real>::sort_occupied(const State<Real>& state, std::size_t k, std::size_t occupied) {
+void BlockSort<Real>::sort_occupied(const State<Real>& state, std::size_t k, std::size_t occupied) {
   Buffers& buffers = buffers_[k];
   const std::size_t begin = buffers.begin[occupied], count = buffers.begin[occupied + 1] - begin;
   const std::int32_t source = source_[state.grid.block_of_occupied(occupied)];
@@ -240,8 +240,8 @@ void BlockOrder<Real>::sort_occupied(const State<Real>& state, std::size_t k, st
 /// Fills the thread's keys (id, old place), sorted by cell and key, from the old range [first, last) of the
 /// occupied block's block and from the arrivals.
 template <class Real>
-void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::size_t occupied, std::size_t first,
-                               std::size_t last) {
+void BlockSort<Real>::collect(const State<Real>& state, std::size_t k, std::size_t occupied, std::size_t first,
+                              std::size_t last) {
   Buffers& buffers = buffers_[k];
   const std::uint8_t* const cells = buffers.cell.data();
   const std::uint32_t* const ids = state.sets[k].id.data();
@@ -276,8 +276,8 @@ void BlockOrder<Real>::collect(const State<Real>& state, std::size_t k, std::siz
 }
 
 template <class Real>
-void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
-                                     const Locator<Real>& locator) const {
+void BlockSort<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
+                                    const Locator<Real>& locator) const {
   const std::size_t all = buffers.begin.size() - 1, room = buffers.arrivals.size();
   const std::uint32_t* const from = buffers.permutation.data();
   const auto move = [&](const auto* old, auto* moved, const auto& value) {
@@ -315,7 +315,7 @@ void BlockOrder<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, T
 }
 
 template <class Real>
-bool BlockOrder<Real>::order(State<Real>& state, Threads& threads, const Ownership& ownership) {
+bool BlockSort<Real>::sort(State<Real>& state, Threads& threads, const Ownership& ownership) {
   const Locator<Real> locator(ownership);
   const std::size_t sets = state.sets.size(), old_count = state.grid.occupied_blocks().size();
   buffers_.resize(sets);
@@ -342,15 +342,15 @@ bool BlockOrder<Real>::order(State<Real>& state, Threads& threads, const Ownersh
   }
   state.nodes.resize(state.grid.size());
   state.rows_touched.assign(new_count, 0);
-  state.counters.order_due = 0;
-  state.counters.runs_when_ordered = -1;
-  state.counters.runs_wasted = 0;
-  ++state.counters.orders;
+  state.counters.sort_due = 0;
+  state.counters.segments_when_sorted = -1;
+  state.counters.segments_wasted = 0;
+  ++state.counters.sorts;
   return new_grid;
 }
 
 template <class Real>
-std::size_t BlockOrder<Real>::bytes() const {
+std::size_t BlockSort<Real>::bytes() const {
   std::size_t sum = source_.capacity() * sizeof(std::int32_t) + weight_.capacity() * sizeof(std::uint32_t) +
                     (old_blocks_.capacity() + new_blocks_.capacity()) * sizeof(Index3);
   for (const Buffers& buffers : buffers_) {
@@ -362,13 +362,13 @@ std::size_t BlockOrder<Real>::bytes() const {
 }
 
 template <class Real>
-std::size_t BlockOrder<Real>::scratch_bytes() const {
+std::size_t BlockSort<Real>::scratch_bytes() const {
   std::size_t sum = 0;
   for (const auto& keys : keys_) sum += keys.capacity() * sizeof(std::uint64_t);
   return sum;
 }
 
-template class BlockOrder<float>;
-template class BlockOrder<double>;
+template class BlockSort<float>;
+template class BlockSort<double>;
 
 }  // namespace repose

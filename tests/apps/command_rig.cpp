@@ -1,4 +1,4 @@
-#include "tests/apps/command_probe.h"
+#include "tests/apps/command_rig.h"
 #include "tests/file_bytes.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
-// Repose tests: see transfer_probe.h.
-#include "tests/kernels/transfer_probe.h"
+// Repose tests: see transfer_rig.h.
+#include "tests/kernels/transfer_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ void expect_channels(const std::vector<Real> (&value)[n], const std::vector<Real
   }
 }
 
-/// Positions of one particle each; with long runs, in a few cells only.
+/// Positions of one particle each; with long segments, in a few cells only.
 template <class Real>
 std::vector<std::array<Real, 3>> random_positions(std::size_t count, Order order, Samples& samples,
                                                   std::size_t stencil) {
@@ -161,22 +161,22 @@ Arena<double> reference_scatter(Particles<Real>& particles, const TransferCase& 
 }
 
 template <class Real>
-Reach reach_of(const Particles<Real>& particles, std::size_t stencil) {
+Touched touched_by(const Particles<Real>& particles, std::size_t stencil) {
   const int width = stencil_width(stencil), origin = kStencilFigures[stencil].lowest_base;
-  Reach reach;
+  Touched touched;
   std::array<int, 3> last{-9, -9, -9};
   for (std::size_t p = 0; p < particles.count; ++p) {
     std::array<int, 3> base;
     for (int axis = 0; axis < 3; ++axis) {
       base[axis] = reference::base_node(stencil, particles.position[axis][p]) - origin;
     }
-    reach.runs += base != last;
+    touched.segments += base != last;
     last = base;
     for (int k = 0; k < width * width; ++k) {
-      reach.rows |= std::uint64_t{1} << ((base[0] + k / width) * kArenaSide + base[1] + k % width);
+      touched.rows |= std::uint64_t{1} << ((base[0] + k / width) * kArenaSide + base[1] + k % width);
     }
   }
-  return reach;
+  return touched;
 }
 
 template <class Real>
@@ -249,7 +249,7 @@ void expect_near(const Gathered<Real>& result, const Gathered<Real>& expected, c
   template Particles<Real> random_particles<Real>(std::size_t, Order, std::uint64_t, std::size_t); \
   template Arena<Real> random_arena<Real>(std::uint64_t);                                          \
   template Arena<double> reference_scatter(Particles<Real>&, const TransferCase&);                 \
-  template Reach reach_of(const Particles<Real>&, std::size_t);                                    \
+  template Touched touched_by(const Particles<Real>&, std::size_t);                                \
   template void expect_near(const Arena<Real>&, const Arena<double>&, double, const std::string&); \
   template void expect_near(const Gathered<Real>&, const Gathered<Real>&, const TransferCase&,     \
                             const std::string&);

@@ -1,4 +1,4 @@
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 //     blocks of a colour share a node: so each node sums in an order that no number of threads changes;
 //   - offsets are relative to the block: shifting the scene by a multiple of 8 cells changes the coordinates of
 //     blocks, and neither offsets nor colours.
-// Order is lazy: it is made anew when a particle has drifted as far as its block allows (a cell; half a cell
-// with the cubic stencil), or when the runs have become so short that scattering loses more than ordering
+// Sorting is lazy: it is done anew when a particle has drifted as far as its block allows (a cell; half a cell
+// with the cubic stencil), or when the segments have become so short that scattering loses more than sorting
 // costs. Both are counted, never timed.
 #pragma once
 
@@ -19,14 +19,14 @@
 
 namespace repose {
 
-/// Makes the order of a state, and keeps memory for it between events: 9.5 bytes a particle in single
+/// Sorts a state, and keeps memory for it between events: 9.5 bytes a particle in single
 /// precision.
 template <class Real>
-class BlockOrder {
+class BlockSort {
  public:
   /// Sorts all sets, brings the block grid up to date and moves every channel along. Returns whether the blocks
   /// of the grid were made anew.
-  bool order(State<Real>& state, Threads& threads, const Ownership& ownership);
+  bool sort(State<Real>& state, Threads& threads, const Ownership& ownership);
 
   /// Memory that grows with the particles.
   std::size_t bytes() const;

@@ -9,18 +9,18 @@
 #include "kernels/effect/hardening.h"
 #include "kernels/effect/rate_friction.h"
 #include "kernels/reference/yield.h"
-#include "tests/kernels/material_probe.h"
+#include "tests/kernels/material_rig.h"
 
 namespace repose {
 
 template <class Real>
-class YieldProbe {
+class YieldRig {
  public:
   using Strains = std::vector<Symmetric<Real>>;
   using Numbers = std::vector<Real>;
 
   /// Without a target, the reference.
-  explicit YieldProbe(std::optional<Target> target = std::nullopt) : target_(target) {}
+  explicit YieldRig(std::optional<Target> target = std::nullopt) : target_(target) {}
   const char* name() const { return target_ ? target_name(*target_) : "reference"; }
 
   Numbers harden(Numbers q, const HardeningConstants<Real>& law) const {
@@ -106,8 +106,8 @@ class YieldProbe {
 
 /// Every instruction set of this machine.
 template <class Real>
-std::vector<YieldProbe<Real>> yield_probes() {
-  std::vector<YieldProbe<Real>> all;
+std::vector<YieldRig<Real>> yield_rigs() {
+  std::vector<YieldRig<Real>> all;
   for (const Target target : supported_targets()) all.emplace_back(target);
   return all;
 }

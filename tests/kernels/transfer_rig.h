@@ -87,13 +87,13 @@ Arena<Real> random_arena(std::uint64_t seed);
 template <class Real>
 Arena<double> reference_scatter(Particles<Real>& particles, const TransferCase& transfer);
 
-/// Bits of the rows of nodes that the particles reach, and how many runs they form.
-struct Reach {
+/// Bits of the rows of nodes that the particles reach, and how many segments they form.
+struct Touched {
   std::uint64_t rows = 0;
-  std::size_t runs = 0;
+  std::size_t segments = 0;
 };
 template <class Real>
-Reach reach_of(const Particles<Real>& particles, std::size_t stencil);
+Touched touched_by(const Particles<Real>& particles, std::size_t stencil);
 
 /// What a gather gave, with one more number behind every channel that nobody may touch.
 template <class Real>

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/compiler/compiler.h"
-#include "tests/physics/physics_probe.h"
+#include "tests/physics/physics_rig.h"
 
 namespace repose {
 
