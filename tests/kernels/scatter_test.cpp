@@ -102,9 +102,9 @@ TYPED_TEST(Scatter, UsedArena_IsAddedTo_AndOtherRowsAreLeftAlone) {
       transfer.kernel<TypeParam>(target).scatter(in, arena.data(), rows);
       EXPECT_EQ(rows, touched.rows | std::uint64_t{1} << 63) << what(transfer, target, 3);
       for (std::size_t k = 0; k < kArenaNodes * kNodeValues; ++k) {
-        const bool touched = (touched.rows >> (k / kArenaRow) & 1) != 0;
-        const double expected = touched ? 1.0 + double{fresh.arena[k]} : 1.0;
-        const double rounding = touched ? 4.0 * std::numeric_limits<TypeParam>::epsilon() : 0.0;
+        const bool hit = (touched.rows >> (k / kArenaRow) & 1) != 0;
+        const double expected = hit ? 1.0 + double{fresh.arena[k]} : 1.0;
+        const double rounding = hit ? 4.0 * std::numeric_limits<TypeParam>::epsilon() : 0.0;
         ASSERT_NEAR(arena[k], expected, rounding) << what(transfer, target, 3) << ' ' << k;
       }
     }
