@@ -26,7 +26,7 @@ struct SandNumbers {
 template <class Real>
 struct Workpiece {
   static constexpr int kChannels = 22;  ///< position, velocity, affine, strain, volume gained
-  /// Stress, moving velocity, velocity before forces, gradient, trace; yield surface and what yielding did.
+  /// Stress, moving velocity, own velocity, gradient, trace; yield surface and what yielding did.
   static constexpr int kNear = 28;
 
   Real* channel[kChannels];  ///< kChunk numbers each
@@ -43,7 +43,7 @@ struct Workpiece {
   Real* gained() const { return channel[21]; }
   Real* const* stress() const { return near; }
   Real* const* moving() const { return near + 6; }
-  Real* const* before() const { return near + 9; }
+  Real* const* own() const { return near + 9; }
   Real* const* gradient() const { return near + 12; }
   Real* trace() const { return near[21]; }
   Real* yield_slope() const { return near[22]; }

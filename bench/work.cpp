@@ -48,7 +48,7 @@ Shape shape_of(std::size_t stencil, std::size_t transfer) {
           slopes,
           affine || !slopes,
           figures.keeps_velocity,
-          !affine || (figures.force == Force::kGradients && constant_d)};
+          !affine || figures.keeps_velocity || (figures.force == Force::kGradients && constant_d)};
 }
 
 /// Weights, slopes and base node of a particle, all axes: per axis x - shift, x - base, f - centre, the node's
@@ -93,7 +93,8 @@ double gather_flops(const Shape& s) {
     if (matrix) sums += weigh_flops(s) + along + 3 * kNodeValues * (w - 1);
   }
   const double matrices = (s.moments ? 9 * 3 : 0) + (s.slopes ? 9 : 0);
-  return locate_flops(s.width, s.slopes) + sums + matrices + (s.keeps_velocity ? 3 * 3 : 0);
+  return locate_flops(s.width, s.slopes) + sums + matrices +
+         (s.keeps_velocity ? 3 * 3 + (s.affine ? 28 : 0) : 0);
 }
 
 /// a (c0 + c1 a + ...): invariants 24, three fused products for each of terms - 2 powers, a^2 30, its sum 21.
@@ -103,33 +104,37 @@ double polynomial_flops(std::size_t terms) {
 
 }  // namespace
 
-Work scatter_work(std::size_t stencil, std::size_t transfer, double run) {
+Work scatter_work(std::size_t stencil, std::size_t transfer, double run, bool measures) {
   const Shape s = shape_of(stencil, transfer);
   Work work;
   work.read = 3 + 3 + (s.affine ? 9 : 0);  // position, velocity, C
   work.near_read = 6 + s.reach() / run;    // stress, arena
   work.near_written = s.reach() / run;     // arena
   work.flops = scatter_flops(s, run);
+  if (!measures) return work;
+  Shape before = s;
+  before.push = false;
+  before.tilt = s.affine;
+  work.near_read += s.reach() / run;
+  work.near_written += s.reach() / run;
+  work.flops += scatter_flops(before, run) - locate_flops(s.width, false);
   return work;
 }
 
-Work gather_work(std::size_t stencil, std::size_t transfer, double run) {
+Work gather_work(std::size_t stencil, std::size_t transfer, double run, bool measures) {
   const Shape s = shape_of(stencil, transfer);
+  const double own = s.keeps_velocity ? 3 : 0;
   Work work;
-  work.read = 3 + (s.keeps_velocity ? 3 : 0);                      // position, velocity
-  work.written = 3 + (s.affine ? 9 : 0);                           // velocity, C
-  work.fetched = (s.keeps_velocity ? 0 : 3) + (s.affine ? 9 : 0);  // the same, unless read
-  work.near_read = s.reach() / run + (s.keeps_velocity ? 3 : 0);   // arena, velocity before forces
-  work.near_written = (s.keeps_velocity ? 3 : 0) + (s.separate_gradient ? 9 : 0);  // velocity and gradient
+  work.read = 3 + own;                                      // position; own velocity, or velocity
+  work.written = 3 + (s.affine ? 9 : 0) + own;              // velocity, C, own velocity
+  work.fetched = 3 + (s.affine ? 9 : 0);                    // velocity, C
+  work.near_read = s.reach() / run;                         // arena
+  work.near_written = own + (s.separate_gradient ? 9 : 0);  // moving velocity, gradient
   work.flops = gather_flops(s);
+  if (!measures) return work;
+  work.near_read += s.reach() / run;
+  work.flops += (s.width + 1) * weigh_flops(s) + s.row() + kNodeValues * (s.width - 1);
   return work;
-}
-
-Work interpolate_work(std::size_t stencil, double run) {
-  const Shape s = shape_of(stencil, 0);
-  const double sums = (s.width + 1) * weigh_flops(s) + s.row() + kNodeValues * (s.width - 1);
-  return {
-      .read = 3, .near_read = s.reach() / run, .near_written = 3, .flops = locate_flops(s.width, false) + sums};
 }
 
 /// dt G 9; exp(2 eps) - I: doubling 6, norm 12; push forward 63 + 42; log: norm 12; and the two polynomials.

@@ -18,7 +18,7 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
       ->allow_extra_args(false);
   command.add_option("--quality", arguments.quality,
                      "draft: grid.spacing x 2, so 8 times fewer particles; standard: the scene as written; "
-                     "reference: time.cfl, sound, isolated and strain x 0.5; --set wins over it");
+                     "reference: grid.spacing x 0.5, so 8 times more; --set wins over it");
   command.add_flag("--allow-outside-paths", arguments.allow_outside_paths,
                    "allow meshes outside the scene's folder");
   command.add_option("--threads", arguments.threads, "threads (default: all)")->check(CLI::Range(1, 1024));

@@ -88,6 +88,9 @@ SetDescription set_description(const Scene& scene, const std::string& name, int 
   for_each_effect(scene.effects, [&set](const auto& effect) {
     for (const Channel& channel : effect.channels(set)) set.channels.push_back(channel);
   });
+  if (transfer_choice(scene).figures().keeps_velocity) {
+    set.channels.insert(set.channels.end(), {kOwnVelocityX, kOwnVelocityY, kOwnVelocityZ});
+  }
   return set;
 }
 

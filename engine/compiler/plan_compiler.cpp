@@ -47,6 +47,7 @@ StepPlan<Real> empty_plan(const Compilation<Real>& compilation, const State<Real
   plan.target = compilation.options.target;
   plan.kernels = &kernels<Real>(plan.target);
   plan.transfer = transfer_choice(scene);
+  if (implicit) plan.transfer.steps_between_measures = 1;  // long steps, and few
   plan.limits = step_limits(scene);
   plan.advection = scene.grid.advection;
   if (plan.advection == Advection::kAfterFriction) plan.scratch.share_arena(kArenaAfterFriction, kArena);
@@ -175,7 +176,8 @@ void PlanCompiler<Real>::move_particles() {
 template <class Real>
 void PlanCompiler<Real>::gather_set(std::size_t k) {
   SetPasses<Real> passes = plan_.gather_of(state_, k);
-  add_gather(plan_, lattice_, rubs(), passes);  // v and C, and the velocity that moves
+  const bool mass_around = asked_for(builder_.lists(k).after_motion, kMassAround.kInfo);
+  add_gather(plan_, lattice_, {rubs(), mass_around}, passes);  // v and C, and the velocity that moves
   append(builder_.lists(k).before_motion, plan_.gather[k]);
   add_advance(plan_, passes);  // x += dt v
   append(builder_.lists(k).after_motion, plan_.gather[k]);

@@ -15,6 +15,7 @@ using BuiltInEffects = std::tuple<Gravity, Colliders>;
 #else
 #include "engine/effect/age.h"
 #include "engine/effect/cohesion.h"
+#include "engine/effect/density_correction.h"
 #include "engine/effect/dilatancy.h"
 #include "engine/effect/emitter.h"
 #include "engine/effect/force_field.h"
@@ -31,24 +32,25 @@ using BuiltInEffects = std::tuple<Gravity, Colliders>;
 #include "engine/effect/volume_correction.h"
 
 namespace repose {
-using BuiltInEffects = std::tuple<Emitters,          // particles that begin
-                                  Sinks,             // and end
-                                  Gravity,           // v += dt g
-                                  ForceFields,       // accelerations and winds of regions
-                                  Pins,              // v* of held nodes
-                                  Probes,            // figures that are measured
-                                  Colliders,         // v* -> v-bar -> v-tilde
-                                  Sleep,             // blocks at rest take no part
-                                  Prestress,         // bodies begin under their weight
-                                  Manufactured,      // bodies that move as a formula says
-                                  Age,               // when particles began
-                                  VolumeCorrection,  // around the return map, and around all that follows here
-                                  Hardening,         // cone <- that of the shear so far
-                                  Cohesion,          // cohesion, and tension after the return
-                                  Moisture,          // cohesion +
-                                  Variation,         // cone *, cohesion *
-                                  Dilatancy,         // dilatancy, and what it opens
-                                  RateFriction>;     // cone +, by the trial strain: last of the cone
+using BuiltInEffects = std::tuple<Emitters,           // particles that begin
+                                  Sinks,              // and end
+                                  Gravity,            // v += dt g
+                                  ForceFields,        // accelerations and winds of regions
+                                  Pins,               // v* of held nodes
+                                  Probes,             // figures that are measured
+                                  Colliders,          // v* -> v-bar -> v-tilde
+                                  Sleep,              // blocks at rest take no part
+                                  Prestress,          // bodies begin under their weight
+                                  Manufactured,       // bodies that move as a formula says
+                                  Age,                // when particles began
+                                  DensityCorrection,  // strain by where particles lie, before the trial strain
+                                  VolumeCorrection,   // around the return map, and around all that follows here
+                                  Hardening,          // cone <- that of the shear so far
+                                  Cohesion,           // cohesion, and tension after the return
+                                  Moisture,           // cohesion +
+                                  Variation,          // cone *, cohesion *
+                                  Dilatancy,          // dilatancy, and what it opens
+                                  RateFriction>;      // cone +, by the trial strain: last of the cone
 }  // namespace repose
 #endif
 

@@ -121,6 +121,7 @@ class ChunkAccess : public DeclaredHandles<Real, Read, Write> {
   std::ptrdiff_t ahead() const { return chunk_.particles.ahead; }
   Real dt() const { return chunk_.dt; }
   double time() const { return chunk_.time; }        ///< at the start of the step, s
+  std::int64_t step() const { return chunk_.step; }  ///< steps completed before this one
   double spacing() const { return chunk_.spacing; }  ///< dx, m
   double mass() const { return chunk_.set.particle_mass; }
   double volume() const { return chunk_.set.particle_volume; }
@@ -251,8 +252,9 @@ class NodeAccess : public DeclaredHandles<Real, Read, Write> {
       : Declared(places), block_(block) {}
 
   Real dt() const { return block_.dt; }
-  double time() const { return block_.state.counters.time; }  ///< at the start of the step, s
-  std::size_t block() const { return block_.block; }          ///< position in the grid
+  std::int64_t step() const { return block_.state.counters.step; }  ///< steps completed before this one
+  double time() const { return block_.state.counters.time; }        ///< at the start of the step, s
+  std::size_t block() const { return block_.block; }                ///< position in the grid
   BlockPlace<Real> place() const { return {block_.state, block_.state.grid.blocks()[block_.block]}; }
 
   /// kBlockValues numbers.

@@ -17,6 +17,7 @@ struct Chunk {
   Real dt;
   double spacing;               ///< dx, m
   double time;                  ///< at the start of the step, s
+  std::int64_t step;            ///< steps completed before this one
   Vec3 origin;                  ///< of the block, in the scene's frame, m
   std::size_t occupied = 0;     ///< the block, as the grid counts those that hold particles
   bool two_velocities = false;  ///< whether particles keep another velocity than the one that moves them

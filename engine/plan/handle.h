@@ -147,12 +147,18 @@ inline constexpr Handle<"stress", Place::kScratch, kStrainComponents> kKirchhoff
 inline constexpr Handle<"no stress", Place::kRoom, kStrainComponents> kNoStress;  ///< never written: zeros
 /// What particles tell the nodes, where something pushes them: v + dt b, m/s.
 inline constexpr Handle<"told velocity", Place::kScratch, 3> kP2gVelocity;
-inline constexpr Handle<"particles' velocity before forces", Place::kRoom, 3> kBefore;  ///< m/s
-inline constexpr Handle<"moving velocity", Place::kMoving, 3> kMovingVelocity;          ///< m/s
-inline constexpr Handle<"gradient", Place::kGradient, kAffineComponents> kGradient;     ///< of it, 1/s
+inline constexpr Handle<"moving velocity", Place::kMoving, 3> kMovingVelocity;       ///< m/s
+inline constexpr Handle<"gradient", Place::kGradient, kAffineComponents> kGradient;  ///< of it, 1/s
 /// Room for both, where they are not what particles keep, and for trials.
 inline constexpr Handle<"room for velocity", Place::kRoom, 3> kVelocityRoom;
 inline constexpr Handle<"room for gradient", Place::kRoom, kAffineComponents> kGradientRoom;
+/// What particles have for themselves beside what nodes tell them: v - sum w v_i, m/s, where the transfer keeps
+/// velocity.
+inline constexpr Handle<"own_velocity_x", Place::kExtra> kOwnVelocityX;
+inline constexpr Handle<"own_velocity_y", Place::kExtra> kOwnVelocityY;
+inline constexpr Handle<"own_velocity_z", Place::kExtra> kOwnVelocityZ;
+/// Mass of the nodes around a particle, sum w m_i, kg; where an effect asks for it.
+inline constexpr Handle<"mass around", Place::kScratch> kMassAround;
 /// What the law of a material keeps beside the strain, in its order.
 inline constexpr Handle<"law's channels", Place::kLaw, kMostLawChannels> kLawChannels;
 inline constexpr Handle<"motion", Place::kMotion> kMotion;

@@ -1,6 +1,10 @@
 // Repose: the stencil and the transfer of a scene, and which velocity moves particles.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
 #include "engine/state/ownership.h"
 #include "kernels/layout/stencil.h"
 #include "kernels/transfer/transfers.h"
@@ -16,20 +20,33 @@ enum class Advection {
   kBeforeFriction,  ///< v-bar
 };
 
+/// Explicit steps after which the velocity that particles have for themselves is measured anew (docs/math.md,
+/// section 47). It changes as particles pass by each other, by less than a cell in as many steps.
+inline constexpr std::int64_t kStepsBetweenMeasures = 4;
+
 /// The stencil and the transfer of a scene.
 struct TransferChoice {
-  int stencil = 0, transfer = 0;  ///< positions in the kernels' lists
-  double kept_velocity = 0.0;     ///< share of its own velocity that a particle keeps (FLIP), in [0, 1]
-  double kept_stretching = 0.0;   ///< share of stretching that RPIC tells, in [0, 1]
+  int stencil = 0, transfer = 0;          ///< positions in the kernels' lists
+  double velocity_loss = 0.0;             ///< 1/s, of what particles have for themselves (flip, aflip)
+  std::optional<double> kept_velocity{};  ///< a share per step, in [0, 1], in its place
+  double kept_stretching = 0.0;           ///< share of stretching that RPIC tells, in [0, 1]
+  std::int64_t steps_between_measures = kStepsBetweenMeasures;
 
   const StencilFigures& nodes() const { return kStencilFigures[static_cast<std::size_t>(stencil)]; }
   const TransferFigures& figures() const { return kTransferFigures[static_cast<std::size_t>(transfer)]; }
   Ownership ownership() const { return {nodes().base_shift, nodes().block_shift}; }
   /// Whether particles store C.
   bool keeps_affine() const { return figures().affine != Affine::kNone; }
+  /// Whether a step, after so many, measures what particles have for themselves; others hold what was found.
+  bool measures_own(std::int64_t step) const {
+    return figures().keeps_velocity && step % steps_between_measures == 0;
+  }
+  /// Share of it that is left after a step.
+  double kept_over(double dt) const { return kept_velocity ? *kept_velocity : std::exp(-velocity_loss * dt); }
   /// Whether the gradient that strains is another matrix than the C that a particle stores.
   bool separate_gradient() const {
-    return !keeps_affine() || (figures().force == Force::kGradients && nodes().constant_d);
+    return !keeps_affine() || figures().keeps_velocity ||
+           (figures().force == Force::kGradients && nodes().constant_d);
   }
 };
 

@@ -58,7 +58,7 @@ void add_stress(const MaterialRuntime<Real>& material, SetPasses<Real> passes) {
 
 template <class Real>
 void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPasses<Real> passes) {
-  const auto kernel = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer].scatter;
+  const TransferKernels<Real>& kernels = plan.kernels->transfer[plan.transfer.stencil][plan.transfer.transfer];
   const bool keeps_velocity = plan.transfer.figures().keeps_velocity, pushed = passes.provides(kP2gVelocity);
   const bool forces = !plan.implicit;  // stress is one; a solve finds its own
   const auto stress = when(forces, kKirchhoffStress);
@@ -69,7 +69,7 @@ void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPa
   const auto before = when(keeps_velocity, kMomentumBeforeForces);
   passes.add({"scatter"}, reads(kPosition, velocity, told, affine, stress),
              writes(kNodeMomentum, before, no_stress, kTouched),
-             [=, kept_stretching = static_cast<Real>(plan.transfer.kept_stretching)](const auto& at) {
+             [=, &kernels, choice = plan.transfer](const auto& at) {
                ScatterInput<Real> in{};
                in.particles = at.span();
                if (pushed) {
@@ -82,15 +82,18 @@ void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPa
                in.mass = static_cast<Real>(at.mass());
                in.impulse_volume =
                    forces ? static_cast<Real>(static_cast<double>(at.dt()) * at.volume()) : Real(0);
-               in.kept_stretching = kept_stretching;
+               in.kept_stretching = static_cast<Real>(choice.kept_stretching);
                in.lattice = lattice;
+               const bool measures = choice.measures_own(at.step());
+               if (measures) {
+                 // What is a particle's own is measured against nodes that no force, stress or push, has
+                 // changed.
+                 std::copy_n(at.span().velocity, 3, in.own_velocity);
+                 in.before = at.write(kMomentumBeforeForces);
+               }
                auto& touched = at.write(kTouched);
-               touched.segments += kernel(in, at.write(kNodeMomentum), touched.rows);
-               if (!keeps_velocity) return;
-               // What particles keep their velocity against must have felt no force: neither stress nor a push.
-               in.particles = at.span();
-               in.impulse_volume = Real(0);
-               kernel(in, at.write(kMomentumBeforeForces), touched.rows);
+               touched.segments += (measures ? kernels.scatter_measuring : kernels.scatter)(
+                   in, at.write(kNodeMomentum), touched.rows);
              });
 }
 
@@ -101,8 +104,7 @@ template <class Real>
 struct Gather {
   TransferChoice choice;
   Lattice<Real> lattice;
-  void (*kernel)(const GatherInput<Real>&, const Real*);
-  void (*interpolate)(const ParticleSpan<Real>&, int, const Real*, Real* const[3]);
+  const TransferKernels<Real>& kernels;
   bool keeps_velocity;
 
   template <class Access>
@@ -110,12 +112,14 @@ struct Gather {
     GatherInput<Real> in{};
     in.particles = at.span();
     in.lattice = lattice;
-    in.kept_velocity = static_cast<Real>(choice.kept_velocity);
-    if (keeps_velocity) {
-      const auto before = at.write(kBefore);
-      interpolate(in.particles, lattice.flat_axis, at.read(kVelocityBeforeForces), before.data());
-      std::copy_n(before.begin(), 3, in.before);
-    }
+    in.mass = at.write(kMassAround);
+    if (!keeps_velocity) return in;
+    in.kept_velocity = static_cast<Real>(choice.kept_over(static_cast<double>(at.dt())));
+    in.dt = at.dt();
+    in.own[0] = at.write(kOwnVelocityX);
+    in.own[1] = at.write(kOwnVelocityY);
+    in.own[2] = at.write(kOwnVelocityZ);
+    if (choice.measures_own(at.step())) in.before = at.read(kVelocityBeforeForces);
     return in;
   }
 
@@ -135,11 +139,13 @@ struct Gather {
     const bool apart = two || keeps_velocity, gradient_apart = two || choice.separate_gradient();
     if (apart) std::copy_n(at.write(kVelocityRoom).begin(), 3, in.moving);
     if (gradient_apart) std::copy_n(at.write(kGradientRoom).begin(), kAffineComponents, in.gradient);
+    const auto kernel = in.before == nullptr ? kernels.gather : kernels.gather_measuring;
     kernel(in, at.read(kNodeVelocity));
     at.put(kMovingVelocity, apart ? in.moving : in.velocity);
     at.put(kGradient, gradient_apart ? in.gradient : in.affine);
     if (!two) return;
     keep(at, in);
+    in.mass = nullptr;
     std::fill_n(in.moving, 3, nullptr);
     std::fill_n(in.gradient, kAffineComponents, nullptr);
     kernel(in, at.read(kVTilde));
@@ -149,21 +155,24 @@ struct Gather {
 }  // namespace
 
 template <class Real>
-void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, bool friction,
+void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, GatherWishes wishes,
                 SetPasses<Real> passes) {
   const TransferChoice& choice = plan.transfer;
   const bool keeps_velocity = choice.figures().keeps_velocity;
-  const Gather<Real> gather{choice, lattice, plan.kernels->transfer[choice.stencil][choice.transfer].gather,
-                            plan.kernels->stencil[choice.stencil].interpolate, keeps_velocity};
+  const Gather<Real> gather{choice, lattice, plan.kernels->transfer[choice.stencil][choice.transfer],
+                            keeps_velocity};
   const auto velocity = when(keeps_velocity, kParticleVelocity);
   const auto before = when(keeps_velocity, kVelocityBeforeForces);
-  const auto tilde = when(friction, kVTilde);
+  const auto tilde = when(wishes.friction, kVTilde);
+  const auto mass = when(wishes.mass_around, kMassAround);
   const auto affine = when(choice.keeps_affine(), kAffine);
-  const auto at_particles = when(keeps_velocity, kBefore);
-  passes.add(
-      {"gather"}, reads(kPosition, velocity, kNodeVelocity, tilde, before),
-      writes(kParticleVelocity, affine, kMovingVelocity, kGradient, at_particles, kVelocityRoom, kGradientRoom),
-      gather);
+  passes.add({"gather"},
+             reads(kPosition, velocity, kNodeVelocity, tilde, before, when(keeps_velocity, kOwnVelocityX),
+                   when(keeps_velocity, kOwnVelocityY), when(keeps_velocity, kOwnVelocityZ)),
+             writes(kParticleVelocity, affine, kMovingVelocity, kGradient, kVelocityRoom, kGradientRoom,
+                    when(keeps_velocity, kOwnVelocityX), when(keeps_velocity, kOwnVelocityY),
+                    when(keeps_velocity, kOwnVelocityZ), mass),
+             gather);
 }
 
 template <class Real>
@@ -253,8 +262,9 @@ void add_velocity_before_forces(StepPlan<Real>& plan) {
   if (plan.transfer.figures().keeps_velocity) {
     plan.nodes.push_back(plan.passes().over_nodes(
         {"velocity before forces", key}, reads(kMomentumBeforeForces), writes(kVelocityBeforeForces),
-        [kernel = plan.kernels->node.normalize, least_mass = plan.least_mass](const auto& at) {
-          kernel(at.write(kVelocityBeforeForces), least_mass);
+        [kernel = plan.kernels->node.normalize, least_mass = plan.least_mass,
+         choice = plan.transfer](const auto& at) {
+          if (choice.measures_own(at.step())) kernel(at.write(kVelocityBeforeForces), least_mass);
         }));
     return;
   }
@@ -264,17 +274,17 @@ void add_velocity_before_forces(StepPlan<Real>& plan) {
       }));
 }
 
-#define REPOSE_INSTANTIATE(Real)                                                                \
-  template Lattice<Real> make_lattice(const State<Real>&, const TransferChoice&);               \
-  template void add_stress(const MaterialRuntime<Real>&, SetPasses<Real>);                      \
-  template void add_scatter(const StepPlan<Real>&, const Lattice<Real>&, SetPasses<Real>);      \
-  template void add_gather(const StepPlan<Real>&, const Lattice<Real>&, bool, SetPasses<Real>); \
-  template void add_advance(const StepPlan<Real>&, SetPasses<Real>);                            \
-  template void add_trial(const MaterialRuntime<Real>&, bool, SetPasses<Real>);                 \
-  template void add_return_map(const MaterialRuntime<Real>&, SetPasses<Real>);                  \
-  template void add_yield_surface(const MaterialRuntime<Real>&, SetPasses<Real>);               \
-  template void add_return_map_per_particle(const MaterialRuntime<Real>&, SetPasses<Real>);     \
-  template void add_normalize(StepPlan<Real>&);                                                 \
+#define REPOSE_INSTANTIATE(Real)                                                                        \
+  template Lattice<Real> make_lattice(const State<Real>&, const TransferChoice&);                       \
+  template void add_stress(const MaterialRuntime<Real>&, SetPasses<Real>);                              \
+  template void add_scatter(const StepPlan<Real>&, const Lattice<Real>&, SetPasses<Real>);              \
+  template void add_gather(const StepPlan<Real>&, const Lattice<Real>&, GatherWishes, SetPasses<Real>); \
+  template void add_advance(const StepPlan<Real>&, SetPasses<Real>);                                    \
+  template void add_trial(const MaterialRuntime<Real>&, bool, SetPasses<Real>);                         \
+  template void add_return_map(const MaterialRuntime<Real>&, SetPasses<Real>);                          \
+  template void add_yield_surface(const MaterialRuntime<Real>&, SetPasses<Real>);                       \
+  template void add_return_map_per_particle(const MaterialRuntime<Real>&, SetPasses<Real>);             \
+  template void add_normalize(StepPlan<Real>&);                                                         \
   template void add_velocity_before_forces(StepPlan<Real>&);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

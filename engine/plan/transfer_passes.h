@@ -20,9 +20,13 @@ void add_stress(const MaterialRuntime<Real>& material, SetPasses<Real> passes);
 /// Tells what kP2gVelocity holds, where a pass before it provides that.
 template <class Real>
 void add_scatter(const StepPlan<Real>& plan, const Lattice<Real>& lattice, SetPasses<Real> passes);
-/// `friction`: whether there is a v-tilde beside the nodes' velocity.
+/// What a gather is asked for beside velocities.
+struct GatherWishes {
+  bool friction = false;     ///< whether there is a v-tilde beside the nodes' velocity
+  bool mass_around = false;  ///< whether kMassAround is wanted
+};
 template <class Real>
-void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, bool friction,
+void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, GatherWishes wishes,
                 SetPasses<Real> passes);
 template <class Real>
 void add_advance(const StepPlan<Real>& plan, SetPasses<Real> passes);

@@ -71,7 +71,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   }
 
   Expressions expressions;
-  apply_quality(options.quality, root, source);
+  apply_quality(options.quality, root);
   apply_overrides(options.overrides, root, source, complaints);
   evaluate_parameters(root, expressions, complaints);
   Scene scene;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/wording.h"
 
@@ -97,10 +98,19 @@ void describe(Fields& fields, GridDescription& grid) {
   const auto share_of = [&](const char* key, double& value, const char* meaning) {
     fields.number(key, value, {.meaning = meaning, .low = 0.0, .high = 1.0});
   };
-  share_of("kept_velocity", grid.kept_velocity,
-           "flip, aflip: share of its own velocity that a particle keeps; 0 is pic, mls_apic");
+  fields.number(
+      "velocity_loss", grid.velocity_loss,
+      {.unit = "1/s",
+       .meaning = "flip, aflip: rate at which a particle loses the velocity that its neighbours do not "
+                  "share; 0: never",
+       .low = 0.0});
+  double kept = grid.kept_velocity.value_or(std::numeric_limits<double>::quiet_NaN());
+  share_of("kept_velocity", kept,
+           "flip, aflip: share of it that is kept, per step and so more of a loss in smaller steps, instead of "
+           "velocity_loss; 0 is pic, mls_apic");
+  if (!std::isnan(kept)) grid.kept_velocity = kept;
   share_of("kept_stretching", grid.kept_stretching,
-           "rpic: share of the stretching part of its matrix that a particle keeps; 1 is apic");
+           "rpic: share of the stretching part of its matrix that a particle keeps, per step; 1 is apic");
   fields.choice("advection", grid.advection, kAdvections,
                 "which velocity moves particles where there is friction");
   fields.integers("origin_cells", grid.origin_cells,

@@ -36,7 +36,8 @@ struct GridDescription {
   Precision precision = Precision::kSingle;
   int stencil = 0;               ///< position in Stencils
   int transfer = 0;              ///< position in Transfers
-  double kept_velocity = 0.95;   ///< share of its own velocity that a particle keeps (flip, aflip)
+  double velocity_loss = 10.0;   ///< 1/s, of velocity that particles have for themselves (flip, aflip)
+  std::optional<double> kept_velocity;  ///< share of it that is kept per step, in its place
   double kept_stretching = 0.0;  ///< share of stretching that rpic keeps
   Advection advection = Advection::kAfterFriction;
   std::array<std::int64_t, 3> origin_cells{

@@ -99,6 +99,12 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
     warnings.push_back(std::string("grid.stencil: no step is stable for particles that stand alone with \"") +
                        nodes.name + "\"; use it only to compare");
   }
+  const TransferFigures& transfer = kTransferFigures[static_cast<std::size_t>(scene.grid.transfer)];
+  if (scene.grid.kept_velocity && transfer.keeps_velocity) {
+    warnings.push_back(scene.where("grid.kept_velocity") +
+                       ": acts per step, so smaller steps lose more velocity; a loss per second is "
+                       "grid.velocity_loss = -ln(kept_velocity) / step");
+  }
   for (const MaterialDescription& material : scene.materials) {
     const FrictionalCone* const cone = cone_of(material.parameters);
     if (cone == nullptr || 3.0 * cone->cone_slope() / std::sqrt(2.0) < 1.0) continue;

@@ -90,11 +90,11 @@ template <class Real>
 void Stepper<Real>::scatter() {
   const PhaseTimer timer(profile_, Phase::kScatter);
   State<Real>& state = sweep_.state();
-  const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
+  const bool measures_own = plan_.transfer.measures_own(state.counters.step);
   sweep_.for_each_block(
       [&](std::size_t block) {
         std::memset(state.nodes.block(block), 0, kBlockValues * sizeof(Real));
-        if (keeps_velocity) std::memset(state.before_forces.block(block), 0, kBlockValues * sizeof(Real));
+        if (measures_own) std::memset(state.before_forces.block(block), 0, kBlockValues * sizeof(Real));
       },
       64);
   segments_.assign(state.grid.occupied_blocks().size(), 0);
@@ -119,9 +119,9 @@ template <class Real>
 
 template <class Real>
 void Stepper<Real>::scatter_block(OccupiedBlock<Real>& block) {
-  const bool keeps_velocity = plan_.transfer.figures().keeps_velocity;
+  const bool measures_own = plan_.transfer.measures_own(block.state.counters.step);
   block.clear(arena_);
-  if (keeps_velocity) block.clear(before_forces_);
+  if (measures_own) block.clear(before_forces_);
   std::uint64_t rows = 0;
   std::size_t segments = 0;
   block.for_each_chunk([&](std::size_t k, Chunk<Real>& chunk) {
@@ -134,8 +134,7 @@ void Stepper<Real>::scatter_block(OccupiedBlock<Real>& block) {
   segments_[block.occupied] = segments;
   State<Real>& state = block.state;
   block.add(arena_, [&state](std::size_t b) { return state.nodes.block(b); });
-  if (keeps_velocity)
-    block.add(before_forces_, [&state](std::size_t b) { return state.before_forces.block(b); });
+  if (measures_own) block.add(before_forces_, [&state](std::size_t b) { return state.before_forces.block(b); });
 }
 
 /// Forces; where steps are explicit also what holds nodes, while they are in cache.

@@ -55,6 +55,7 @@ struct OccupiedBlock {
                           dt,
                           state.spacing,
                           state.counters.time,
+                          state.counters.step,
                           origin,
                           occupied,
                           two_velocities};

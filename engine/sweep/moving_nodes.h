@@ -10,10 +10,11 @@ class MovingNodes {
  public:
   /// Asks the plan for the room that it needs.
   explicit MovingNodes(StepPlan<Real>& plan)
-      : keeps_velocity_(plan.transfer.figures().keeps_velocity),
+      : transfer_(plan.transfer),
         arena_(plan.scratch.place_arena(kArena)),
         after_friction_(plan.scratch.place_arena(kArenaAfterFriction)),
-        before_forces_(keeps_velocity_ ? plan.scratch.place_arena(kArenaBeforeForces) : arena_) {}
+        before_forces_(transfer_.figures().keeps_velocity ? plan.scratch.place_arena(kArenaBeforeForces)
+                                                          : arena_) {}
 
   /// What moves is then in the arena at place().
   void load(OccupiedBlock<Real>& block) const {
@@ -28,7 +29,7 @@ class MovingNodes {
     if (two_arenas()) block.load(arena_, nodes);
     if (!two_arenas() || !state.after_friction.slot.empty()) block.load(after_friction_, after_friction);
     block.two_velocities = friction && two_arenas();
-    if (keeps_velocity_) {
+    if (transfer_.measures_own(state.counters.step)) {
       block.load(before_forces_, [&state](std::size_t b) { return state.before_forces.block(b); });
     }
   }
@@ -45,7 +46,7 @@ class MovingNodes {
   /// Whether what moves particles is not what they keep.
   bool two_arenas() const { return arena_ != after_friction_; }
 
-  bool keeps_velocity_;
+  TransferChoice transfer_;
   std::size_t arena_, after_friction_, before_forces_;
 };
 

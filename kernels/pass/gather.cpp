@@ -9,6 +9,7 @@
 #include "kernels/base/targets.h"
 
 #include "kernels/base/simd-inl.h"
+#include "kernels/base/small_matrix-inl.h"
 #include "kernels/layout/stencil.h"
 #include "kernels/pass/fill.h"
 #include "kernels/pass/for_each_transfer.h"
@@ -19,23 +20,38 @@ namespace repose {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// What particles have for themselves beside what nodes tell them.
+enum class Own {
+  kNothing,
+  kHeld,      ///< what was found when it was measured last
+  kMeasured,  ///< v_p - sum w v_i before forces
+};
+
 /// What decides the shape of the loops: many transfers share it.
-template <class Stencil, Affine affine, Force force>
+template <class Stencil, Affine affine, Force force, Own own>
 struct Loops {
   static constexpr int kWidth = Stencil::kWidth;
   static constexpr int kCenter = Stencil::kCenter;
   static constexpr bool kAffine = affine != Affine::kNone;
   static constexpr bool kSlopes = force == Force::kGradients;  ///< sums with the weights' slopes are wanted
   static constexpr bool kMoments = !kSlopes || (kAffine && Stencil::kConstantD);
+  static constexpr Own kOwn = own;
+};
+
+/// Sums over the stencils of a pack of particles.
+template <class T>
+struct Sums {
+  static constexpr std::size_t kValues = 4 * Pack<T>::size();
+  alignas(64) T sum[kValues];        // sum w (m, v)
+  alignas(64) T moment[3][kValues];  // its first moments along x, y, z about the centre node, in cells
+  alignas(64) T slope[3][kValues];   // sum w' (m, v) along x, y, z, in 1/dx
 };
 
 template <class T>
 struct Staged {
-  static constexpr std::size_t kValues = 4 * Pack<T>::size();
   StencilPack<T> stencil;
-  alignas(64) T sum[kValues];        // sum w (m, v)
-  alignas(64) T moment[3][kValues];  // its first moments along x, y, z about the centre node, in cells
-  alignas(64) T slope[3][kValues];   // sum w' (m, v) along x, y, z, in 1/dx
+  Sums<T> sums;
+  alignas(64) T before[Sums<T>::kValues];  // sum w (m, v) before forces
 };
 
 /// Sums along one axis over the nodes of a stencil: with the weights, with their first moments and with their
@@ -81,9 +97,8 @@ REPOSE_INLINE Row<T> weigh(const Row<T>* rows, const T* weight) {
 /// Sums over the stencil of the node values, first along y, then x, then z.
 template <class S, class T>
 REPOSE_INLINE void sum_stencil(const Row<T> (&rows)[S::kWidth * S::kWidth], const Row<T>& z_positions,
-                               std::size_t lane, Staged<T>& staged) {
+                               const StencilPack<T>& stencil, std::size_t lane, Sums<T>& sums) {
   const std::size_t at = 4 * lane;
-  const StencilPack<T>& stencil = staged.stencil;
   Row<T> plane[S::kWidth], moment_y[S::kWidth], slope_y[S::kWidth];
   HWY_UNROLL(4)
   for (int i = 0; i < S::kWidth; ++i) {
@@ -97,52 +112,76 @@ REPOSE_INLINE void sum_stencil(const Row<T> (&rows)[S::kWidth * S::kWidth], cons
   const Row<T> sum = x.sum * weight_z;
   if constexpr (S::kMoments) {
     const Row<T> along_y = weigh<S>(moment_y, stencil.weight[0] + at) * weight_z;
-    sum_over_nodes(sum, x.moment * weight_z, along_y, sum * z_positions, staged.sum + at, staged.moment[0] + at,
-                   staged.moment[1] + at, staged.moment[2] + at);
+    sum_over_nodes(sum, x.moment * weight_z, along_y, sum * z_positions, sums.sum + at, sums.moment[0] + at,
+                   sums.moment[1] + at, sums.moment[2] + at);
   }
   if constexpr (S::kSlopes) {
     const Row<T> along_y = weigh<S>(slope_y, stencil.weight[0] + at) * weight_z;
     sum_over_nodes(sum, x.slope * weight_z, along_y, x.sum * spread_over_values(stencil.slope[2] + at),
-                   staged.sum + at, staged.slope[0] + at, staged.slope[1] + at, staged.slope[2] + at);
+                   sums.sum + at, sums.slope[0] + at, sums.slope[1] + at, sums.slope[2] + at);
   }
 }
 
-/// Writes the nine numbers of D^-1 (moments - v (x_p - x_c)^T), or of the slopes by dx, where they are wanted.
+/// D^-1 (moments - v (x_p - x_c)^T).
 template <class T>
-REPOSE_INLINE void store_matrix(const Pack<T> (&column)[3], int axis, T* const to[9], std::size_t first,
-                                std::size_t lanes) {
-  if (to[0] == nullptr) return;
-  HWY_UNROLL(3)
-  for (int row = 0; row < 3; ++row) column[row].store_first(to[3 * row + axis] + first, lanes);
-}
-
-template <class S, class T>
-REPOSE_INLINE void finish_matrices(const GatherInput<T>& in, const Staged<T>& staged, const Pack<T> (&v)[3],
-                                   std::size_t first, std::size_t lanes) {
-  using P = Pack<T>;
-  const P per_cell(T(1) / in.lattice.spacing);
+REPOSE_INLINE Mat3<Pack<T>> matrix_of_moments(const Sums<T>& sums, const StencilPack<T>& stencil,
+                                              const Pack<T> (&v)[3], const Lattice<T>& lattice) {
+  Mat3<Pack<T>> matrix;
   HWY_UNROLL(3)
   for (int axis = 0; axis < 3; ++axis) {
-    P mass, column[3];
-    if constexpr (S::kMoments) {
-      P moment[3];
-      load_interleaved(staged.moment[axis], mass, moment[0], moment[1], moment[2]);
-      const P scale(in.lattice.axis_scale[axis]);
-      HWY_UNROLL(3)
-      for (int row = 0; row < 3; ++row) {
-        column[row] = scale * fnma(staged.stencil.from_center[axis], v[row], moment[row]);
-      }
-      if constexpr (S::kAffine) store_matrix(column, axis, in.affine, first, lanes);
-      if constexpr (!S::kSlopes) store_matrix(column, axis, in.gradient, first, lanes);
-    }
-    if constexpr (S::kSlopes) {
-      load_interleaved(staged.slope[axis], mass, column[0], column[1], column[2]);
-      HWY_UNROLL(3)
-      for (int row = 0; row < 3; ++row) column[row] = per_cell * column[row];
-      if constexpr (S::kAffine && !S::kMoments) store_matrix(column, axis, in.affine, first, lanes);
-      store_matrix(column, axis, in.gradient, first, lanes);
+    Pack<T> mass, moment[3];
+    load_interleaved(sums.moment[axis], mass, moment[0], moment[1], moment[2]);
+    const Pack<T> scale(lattice.axis_scale[axis]);
+    HWY_UNROLL(3)
+    for (int row = 0; row < 3; ++row) {
+      matrix.m[row][axis] = scale * fnma(stencil.from_center[axis], v[row], moment[row]);
     }
   }
+  return matrix;
+}
+/// The slopes by dx.
+template <class T>
+REPOSE_INLINE Mat3<Pack<T>> matrix_of_slopes(const Sums<T>& sums, T spacing) {
+  const Pack<T> per_cell(T(1) / spacing);
+  Mat3<Pack<T>> matrix;
+  HWY_UNROLL(3)
+  for (int axis = 0; axis < 3; ++axis) {
+    Pack<T> mass, slope[3];
+    load_interleaved(sums.slope[axis], mass, slope[0], slope[1], slope[2]);
+    HWY_UNROLL(3)
+    for (int row = 0; row < 3; ++row) matrix.m[row][axis] = per_cell * slope[row];
+  }
+  return matrix;
+}
+
+/// Where it is wanted.
+template <class T>
+REPOSE_INLINE void store_matrix(const Mat3<Pack<T>>& matrix, T* const to[9], std::size_t first,
+                                std::size_t lanes) {
+  if (to[0] == nullptr) return;
+  HWY_UNROLL(9)
+  for (int k = 0; k < 9; ++k) matrix.m[k / 3][k % 3].store_first(to[k] + first, lanes);
+}
+
+/// C <- C - dt W W, W the skew part of C: to turn is to be accelerated inwards, and the slopes of velocity at
+/// the end of the step are those at its begin less what nodes do not see of that (docs/math.md, section 47).
+/// Plane strain turns about its flat axis alone.
+template <class T>
+REPOSE_INLINE void turn(T dt, int flat_axis, Mat3<Pack<T>>& c) {
+  using P = Pack<T>;
+  const auto spin = [&](int axis, const P& fore, const P& aft) HWY_ATTR {
+    return P(flat_axis < 0 || flat_axis == axis ? T(0.5) : T(0)) * (fore - aft);
+  };
+  const P x = spin(0, c.m[2][1], c.m[1][2]), y = spin(1, c.m[0][2], c.m[2][0]),
+          z = spin(2, c.m[1][0], c.m[0][1]);
+  // W W = w w^T - |w|^2
+  const P step(dt), dt_x = step * x, dt_y = step * y, dt_z = step * z;
+  c.m[0][0] = fma(dt_y, y, fma(dt_z, z, c.m[0][0]));
+  c.m[1][1] = fma(dt_x, x, fma(dt_z, z, c.m[1][1]));
+  c.m[2][2] = fma(dt_x, x, fma(dt_y, y, c.m[2][2]));
+  c.m[0][1] = fnma(dt_x, y, c.m[0][1]), c.m[1][0] = fnma(dt_x, y, c.m[1][0]);
+  c.m[0][2] = fnma(dt_x, z, c.m[0][2]), c.m[2][0] = fnma(dt_x, z, c.m[2][0]);
+  c.m[1][2] = fnma(dt_y, z, c.m[1][2]), c.m[2][1] = fnma(dt_y, z, c.m[2][1]);
 }
 
 template <class S, class T>
@@ -150,26 +189,45 @@ REPOSE_INLINE void finish(const GatherInput<T>& in, const Staged<T>& staged, std
                           std::size_t lanes) {
   using P = Pack<T>;
   const auto next = static_cast<std::ptrdiff_t>(first) + in.particles.ahead;
-  P mass, v[3];
-  load_interleaved(staged.sum, mass, v[0], v[1], v[2]);
+  P mass, v[3], before[3];
+  load_interleaved(staged.sums.sum, mass, v[0], v[1], v[2]);
+  if (in.mass != nullptr) mass.store_first(in.mass + first, lanes);
+  if constexpr (S::kOwn == Own::kMeasured)
+    load_interleaved(staged.before, mass, before[0], before[1], before[2]);
   HWY_UNROLL(3)
   for (int row = 0; row < 3; ++row) {
     P::prefetch(in.particles.position[row] + next);
     P::prefetch(in.particles.velocity[row] + next);
+    if constexpr (S::kOwn != Own::kNothing) P::prefetch(in.own[row] + next);
     if (in.moving[row] != nullptr) v[row].store_first(in.moving[row] + first, lanes);
     if (in.velocity[row] == nullptr) continue;
-    P kept = v[row];
-    if (in.before[row] != nullptr) {
-      const P own = P::load_first(in.particles.velocity[row] + first, lanes);
-      kept = fma(P(in.kept_velocity), own - P::load_first(in.before[row] + first, lanes), kept);
+    if constexpr (S::kOwn == Own::kNothing) {
+      v[row].store_first(in.velocity[row] + first, lanes);
+    } else {
+      P own;
+      if constexpr (S::kOwn == Own::kMeasured) {
+        own = P::load_first(in.particles.velocity[row] + first, lanes) - before[row];
+      } else {
+        own = P::load_first(in.own[row] + first, lanes);
+      }
+      own = P(in.kept_velocity) * own;
+      own.store_first(in.own[row] + first, lanes);
+      (v[row] + own).store_first(in.velocity[row] + first, lanes);
     }
-    kept.store_first(in.velocity[row] + first, lanes);
   }
   if constexpr (S::kAffine) {
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) P::prefetch(in.particles.affine[k] + next);
   }
-  finish_matrices<S>(in, staged, v, first, lanes);
+  Mat3<P> moments, slopes;
+  if constexpr (S::kMoments) moments = matrix_of_moments(staged.sums, staged.stencil, v, in.lattice);
+  if constexpr (S::kSlopes) slopes = matrix_of_slopes(staged.sums, in.lattice.spacing);
+  store_matrix(S::kSlopes ? slopes : moments, in.gradient, first, lanes);
+  if constexpr (S::kAffine) {
+    Mat3<P> c = S::kMoments ? moments : slopes;
+    if constexpr (S::kOwn != Own::kNothing) turn(in.dt, in.lattice.flat_axis, c);
+    store_matrix(c, in.affine, first, lanes);
+  }
 }
 
 template <class Stencil, class T>
@@ -192,53 +250,52 @@ REPOSE_INLINE void ask_for(const Soon<T>& soon, std::size_t particle) {
   }
 }
 
-template <class Stencil, Affine affine, Force force, class T>
+/// sum w v_i alone.
+template <class S, class T>
+REPOSE_INLINE void interpolate(const Row<T> (&rows)[S::kWidth * S::kWidth], const StencilPack<T>& stencil,
+                               std::size_t lane, T* sums) {
+  const std::size_t at = 4 * lane;
+  Row<T> plane[S::kWidth];
+  HWY_UNROLL(4)
+  for (int i = 0; i < S::kWidth; ++i) plane[i] = weigh<S>(rows + S::kWidth * i, stencil.weight[1] + at);
+  const Row<T> sum = weigh<S>(plane, stencil.weight[0] + at);
+  sum_over_nodes(sum * spread_over_values(stencil.weight[2] + at), sums + at);
+}
+
+/// The rows of nodes around particles, one after the other: those of a segment are loaded once.
+template <class Stencil, class T>
+class LoadedRows {
+ public:
+  REPOSE_INLINE explicit LoadedRows(const T* arena) : arena_(arena) {}
+
+  REPOSE_INLINE const Row<T> (&at(std::int32_t node))[Stencil::kWidth * Stencil::kWidth] {
+    if (node != node_) load_rows<Stencil>(arena_, node_ = node, rows_);
+    return rows_;
+  }
+
+ private:
+  const T* arena_;
+  std::int32_t node_ = -1;
+  Row<T> rows_[Stencil::kWidth * Stencil::kWidth];
+};
+
+template <class Stencil, Affine affine, Force force, Own own, class T>
 void gather(const GatherInput<T>& in, const T* arena) {
-  using S = Loops<Stencil, affine, force>;
+  using S = Loops<Stencil, affine, force, own>;
   Staged<T> staged;
-  Row<T> rows[S::kWidth * S::kWidth];
+  LoadedRows<Stencil, T> now(arena), before(in.before);
   const Row<T> z_positions = node_positions(T(S::kCenter));
-  std::int32_t node = -1;
   for (const auto [first, lanes] : packs<T>(in.particles.count)) {
+    const StencilPack<T>& stencil = staged.stencil;
     locate<Stencil, force>(in.particles.position, first, lanes, in.lattice.flat_axis, staged.stencil);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (staged.stencil.node[lane] != node) {
-        node = staged.stencil.node[lane];
-        load_rows<Stencil>(arena, node, rows);
+      sum_stencil<S>(now.at(stencil.node[lane]), z_positions, stencil, lane, staged.sums);
+      if constexpr (own == Own::kMeasured) {
+        interpolate<S>(before.at(stencil.node[lane]), stencil, lane, staged.before);
       }
-      sum_stencil<S>(rows, z_positions, lane, staged);
       ask_for(in.soon, first + lane);
     }
     finish<S>(in, staged, first, lanes);
-  }
-}
-
-/// sum w v_i alone.
-template <class Stencil, class T>
-void interpolate(const ParticleSpan<T>& particles, int flat_axis, const T* arena, T* const velocity[3]) {
-  constexpr int kWidth = Stencil::kWidth;
-  StencilPack<T> stencil;
-  alignas(64) T sums[4 * Pack<T>::size()];
-  Row<T> rows[kWidth * kWidth];
-  std::int32_t node = -1;
-  for (const auto [first, lanes] : packs<T>(particles.count)) {
-    locate<Stencil, Force::kMoments>(particles.position, first, lanes, flat_axis, stencil);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t at = 4 * lane;
-      if (stencil.node[lane] != node) {
-        node = stencil.node[lane];
-        load_rows<Stencil>(arena, node, rows);
-      }
-      Row<T> plane[kWidth];
-      HWY_UNROLL(4)
-      for (int i = 0; i < kWidth; ++i) plane[i] = weigh<Stencil>(rows + kWidth * i, stencil.weight[1] + at);
-      const Row<T> sum = weigh<Stencil>(plane, stencil.weight[0] + at);
-      sum_over_nodes(sum * spread_over_values(stencil.weight[2] + at), sums + at);
-    }
-    Pack<T> mass, v[3];
-    load_interleaved(sums, mass, v[0], v[1], v[2]);
-    HWY_UNROLL(3)
-    for (int axis = 0; axis < 3; ++axis) v[axis].store_first(velocity[axis] + first, lanes);
   }
 }
 
@@ -247,9 +304,15 @@ void fill_precision(Kernels<T>& table) {
   for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
     // A skew matrix goes to the nodes, but all of C is kept: RPIC gathers as APIC does.
     constexpr Affine kAffine = Transfer::kAffine == Affine::kNone ? Affine::kNone : Affine::kFull;
-    table.transfer[s][t].gather = gather<Stencil, kAffine, force_of<Stencil, Transfer>(), T>;
-    table.transfer[s][t].gradient = gather<Stencil, Affine::kNone, force_of<Stencil, Transfer>(), T>;
-    table.stencil[s].interpolate = interpolate<Stencil, T>;
+    constexpr Force kForce = force_of<Stencil, Transfer>();
+    constexpr Own kHeld = Transfer::kKeepsVelocity ? Own::kHeld : Own::kNothing;
+    TransferKernels<T>& to = table.transfer[s][t];
+    to.gather = gather<Stencil, kAffine, kForce, kHeld, T>;
+    to.gather_measuring = nullptr;
+    if constexpr (Transfer::kKeepsVelocity) {
+      to.gather_measuring = gather<Stencil, kAffine, kForce, Own::kMeasured, T>;
+    }
+    to.gradient = gather<Stencil, Affine::kNone, kForce, Own::kNothing, T>;
   });
 }
 

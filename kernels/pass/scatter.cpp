@@ -2,6 +2,7 @@
 //   w (m v + m A (x_i - x_p)) + dt f_i,
 //   f_i = -V0 tau D^-1 w (x_i - x_p)  by moments (Hu et al. 2018),   or  -V0 tau grad w  by gradients
 // as rows of four nodes. Particles with one base node (a segment) add up in registers and touch memory once.
+// Where particles keep their velocity, a second arena receives the momentum without dt f_i in the same sweep.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"
 #include "hwy/foreach_target.h"
@@ -20,22 +21,27 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// What decides the shape of the loops: many transfers share it.
-template <class Stencil, Affine affine, Force force>
+template <class Stencil, Affine affine, Force force, bool before = false>
 struct Loops {
   static constexpr int kWidth = Stencil::kWidth;
   static constexpr int kCenter = Stencil::kCenter;
   static constexpr bool kAffine = affine != Affine::kNone;
   static constexpr bool kPush = force == Force::kGradients;  ///< forces by gradients
   static constexpr bool kSlope = kAffine || !kPush;          ///< momentum varies along the stencil
+  static constexpr bool kBefore = before;                    ///< momentum before forces is wanted too
 };
 
-/// A pack of particles, turned to be read one particle at a time: four numbers each.
+/// Of a pack of particles, turned to be read one particle at a time, four numbers each.
 template <class T>
-struct Staged {
+struct Momentum {
   static constexpr std::size_t kLanes = Pack<T>::size();
   alignas(64) T center[4 * kLanes];    // m, and the momentum that the centre node would get
   alignas(64) T slope[3][4 * kLanes];  // 0, and its change per cell along x, y, z
-  alignas(64) T push[3][4 * kLanes];   // 0, and -dt V0 tau_axis / dx, which goes with the weights' slopes
+};
+template <class T>
+struct Staged {
+  Momentum<T> momentum, before;
+  alignas(64) T push[3][4 * Pack<T>::size()];  // 0, and -dt V0 tau_axis / dx, for the weights' slopes
   StencilPack<T> stencil;
 };
 
@@ -48,16 +54,40 @@ REPOSE_INLINE Pack<T> p2g_affine(const Pack<T> (&c)[3][3], int row, int axis, T 
   return fma(Pack<T>(kept_stretching), stretch, spin);
 }
 
-template <class Stencil, Affine affine, Force force, class T>
+/// Momentum at the centre node, and its slopes unless they are zero.
+template <bool slopes, class T>
+REPOSE_INLINE void store(Pack<T> mass, const Pack<T> (&momentum)[3], const Pack<T> (&slope)[3][3],
+                         Momentum<T>& out) {
+  store_interleaved(mass, momentum[0], momentum[1], momentum[2], out.center);
+  if constexpr (!slopes) return;
+  const Pack<T> zero(T(0));
+  HWY_UNROLL(3)
+  for (int axis = 0; axis < 3; ++axis) {
+    store_interleaved(zero, slope[axis][0], slope[axis][1], slope[axis][2], out.slope[axis]);
+  }
+}
+
+/// From a particle to the centre node.
+template <class T>
+REPOSE_INLINE Pack<T> at_center(Pack<T> momentum, const Pack<T> (&slope)[3][3], int row,
+                                const StencilPack<T>& stencil) {
+  HWY_UNROLL(3)
+  for (int axis = 0; axis < 3; ++axis) {
+    momentum = fnma(slope[axis][row], stencil.from_center[axis], momentum);
+  }
+  return momentum;
+}
+
+template <class Stencil, Affine affine, Force force, bool before, class T>
 REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size_t lanes, Staged<T>& out) {
   using P = Pack<T>;
-  using S = Loops<Stencil, affine, force>;
+  using S = Loops<Stencil, affine, force, before>;
   locate<Stencil, force>(in.particles.position, first, lanes, in.lattice.flat_axis, out.stencil);
   const P mass(in.mass), mass_per_cell(in.mass * in.lattice.spacing), zero(T(0));
   const P push_scale(-in.impulse_volume / in.lattice.spacing);
   static constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   const auto next = static_cast<std::ptrdiff_t>(first) + in.particles.ahead;
-  P momentum[3], slope[3][3], push[3][3], c[3][3];
+  P momentum[3], slope[3][3], push[3][3], c[3][3], own_momentum[3], own_slope[3][3];
   if constexpr (S::kAffine) {
     HWY_UNROLL(9)
     for (int k = 0; k < 9; ++k) {
@@ -80,24 +110,27 @@ REPOSE_INLINE void stage(const ScatterInput<T>& in, std::size_t first, std::size
       } else {
         slope[axis][row] = zero;
       }
+      own_slope[axis][row] = slope[axis][row];
       if constexpr (S::kPush) {
         push[axis][row] = push_scale * tau;
       } else {
         const P impulse_per_cell(in.impulse_volume * in.lattice.axis_scale[axis]);
         slope[axis][row] = fnma(impulse_per_cell, tau, slope[axis][row]);
       }
-      if constexpr (S::kSlope) {
-        momentum[row] = fnma(slope[axis][row], out.stencil.from_center[axis], momentum[row]);
+    }
+    if constexpr (S::kBefore) {
+      own_momentum[row] = mass * P::load_first(in.own_velocity[row] + first, lanes);
+      if constexpr (S::kAffine) {
+        own_momentum[row] = at_center(own_momentum[row], own_slope, row, out.stencil);
       }
     }
+    if constexpr (S::kSlope) momentum[row] = at_center(momentum[row], slope, row, out.stencil);
   }
-  store_interleaved(mass, momentum[0], momentum[1], momentum[2], out.center);
-  HWY_UNROLL(3)
-  for (int axis = 0; axis < 3; ++axis) {
-    if constexpr (S::kSlope) {
-      store_interleaved(zero, slope[axis][0], slope[axis][1], slope[axis][2], out.slope[axis]);
-    }
-    if constexpr (S::kPush) {
+  store<S::kSlope>(mass, momentum, slope, out.momentum);
+  if constexpr (S::kBefore) store<S::kAffine>(mass, own_momentum, own_slope, out.before);
+  if constexpr (S::kPush) {
+    HWY_UNROLL(3)
+    for (int axis = 0; axis < 3; ++axis) {
       store_interleaved(zero, push[axis][0], push[axis][1], push[axis][2], out.push[axis]);
     }
   }
@@ -121,9 +154,9 @@ REPOSE_INLINE void stage(const PushInput<T>& in, std::size_t first, std::size_t 
         momentum[row] = fnma(change[axis][row], out.stencil.from_center[axis], momentum[row]);
     }
     store_interleaved(zero, change[axis][0], change[axis][1], change[axis][2],
-                      kPush ? out.push[axis] : out.slope[axis]);
+                      kPush ? out.push[axis] : out.momentum.slope[axis]);
   }
-  store_interleaved(zero, momentum[0], momentum[1], momentum[2], out.center);
+  store_interleaved(zero, momentum[0], momentum[1], momentum[2], out.momentum.center);
 }
 
 /// base + k slope for a small k known at compile time.
@@ -144,24 +177,27 @@ REPOSE_INLINE void unroll(Body body) {
   (std::make_integer_sequence<int, count>());
 }
 
+template <class S, class T>
+using Rows = Row<T>[S::kWidth * S::kWidth];
+
 /// Adds one particle to the rows of its segment. Along z a row does all nodes at once; then
 ///   row (i, j) += wx_i wy_j (center + (i - c) slope_x + (j - c) slope_y) + (wx'_i wy_j push_x + wx_i wy'_j
 ///   push_y)
-template <class S, class T>
-REPOSE_INLINE void add_particle(const Staged<T>& from, std::size_t lane, const Row<T>& z_positions,
-                                Row<T> (&rows)[S::kWidth * S::kWidth]) {
+template <class S, bool slopes, bool pushes, class T>
+REPOSE_INLINE void add_particle(const Momentum<T>& momentum, const Staged<T>& from, std::size_t lane,
+                                const Row<T>& z_positions, Rows<S, T>& rows) {
   const std::size_t at = 4 * lane;
   const StencilPack<T>& stencil = from.stencil;
   const Row<T> weight_z = spread_over_values(stencil.weight[2] + at);
-  Row<T> center = repeat_for_nodes(from.center + at), slope_x, slope_y, push_x, push_y;
-  if constexpr (S::kSlope) {
-    center = weight_z * fma(z_positions, repeat_for_nodes(from.slope[2] + at), center);
-    slope_x = weight_z * repeat_for_nodes(from.slope[0] + at);
-    slope_y = weight_z * repeat_for_nodes(from.slope[1] + at);
+  Row<T> center = repeat_for_nodes(momentum.center + at), slope_x, slope_y, push_x, push_y;
+  if constexpr (slopes) {
+    center = weight_z * fma(z_positions, repeat_for_nodes(momentum.slope[2] + at), center);
+    slope_x = weight_z * repeat_for_nodes(momentum.slope[0] + at);
+    slope_y = weight_z * repeat_for_nodes(momentum.slope[1] + at);
   } else {
     center = weight_z * center;
   }
-  if constexpr (S::kPush) {
+  if constexpr (pushes) {
     center = fma(spread_over_values(stencil.slope[2] + at), repeat_for_nodes(from.push[2] + at), center);
     push_x = weight_z * repeat_for_nodes(from.push[0] + at);
     push_y = weight_z * repeat_for_nodes(from.push[1] + at);
@@ -169,90 +205,114 @@ REPOSE_INLINE void add_particle(const Staged<T>& from, std::size_t lane, const R
   unroll<S::kWidth>([&]<int i>(std::integral_constant<int, i>) {
     const Pack<T> w(stencil.weight[0][at + i]);
     Row<T> middle = center, slope, side;
-    if constexpr (S::kSlope) {
+    if constexpr (slopes) {
       middle = step_row<i - S::kCenter>(center, slope_x);
       slope = slope_y * w;
     }
     middle = middle * w;
-    if constexpr (S::kPush) {
+    if constexpr (pushes) {
       middle = fma(push_x, Pack<T>(stencil.slope[0][at + i]), middle);
       side = push_y * w;
     }
     unroll<S::kWidth>([&]<int j>(std::integral_constant<int, j>) {
       Row<T>& row = rows[i * S::kWidth + j];
       Row<T> value = middle;
-      if constexpr (S::kSlope) value = step_row<j - S::kCenter>(middle, slope);
+      if constexpr (slopes) value = step_row<j - S::kCenter>(middle, slope);
       row = fma(value, Pack<T>(stencil.weight[1][at + j]), row);
-      if constexpr (S::kPush) row = fma(side, Pack<T>(stencil.slope[1][at + j]), row);
+      if constexpr (pushes) row = fma(side, Pack<T>(stencil.slope[1][at + j]), row);
     });
   });
 }
 
-/// Adds the rows of a segment to the arena and clears them.
-template <int kWidth, class T>
-REPOSE_INLINE void flush(std::int32_t node, Row<T> (&rows)[kWidth * kWidth], T* arena, std::uint64_t& touched) {
-  T* corner = arena + node * kNodeValues;
-  HWY_UNROLL(4)
-  for (int i = 0; i < kWidth; ++i) {
+/// Particles with one base node, one after the other: their rows stay in registers.
+template <class S, bool slopes, bool pushes, class T>
+class Segments {
+ public:
+  REPOSE_INLINE explicit Segments(T* arena) : arena_(arena), z_positions_(node_positions(T(S::kCenter))) {
+    HWY_UNROLL(16)
+    for (int r = 0; r < S::kWidth * S::kWidth; ++r) rows_[r] = zero_row<T>();
+  }
+
+  REPOSE_INLINE void add(const Momentum<T>& momentum, const Staged<T>& staged, std::size_t lane) {
+    if (staged.stencil.node[lane] != node_) {
+      end();
+      node_ = staged.stencil.node[lane];
+      ++count_;
+    }
+    add_particle<S, slopes, pushes>(momentum, staged, lane, z_positions_, rows_);
+  }
+  /// Adds the rows to the arena and clears them.
+  REPOSE_INLINE void end() {
+    if (node_ < 0) return;
+    constexpr int kWidth = S::kWidth;
+    T* corner = arena_ + node_ * kNodeValues;
     HWY_UNROLL(4)
-    for (int j = 0; j < kWidth; ++j) {
-      T* at = corner + (i * kArenaSide + j) * kArenaRow;
-      store_row(load_row(at) + rows[i * kWidth + j], at);
-      rows[i * kWidth + j] = zero_row<T>();
-    }
-  }
-  constexpr std::uint64_t kColumn = (1u << kWidth) - 1;
-  std::uint64_t square = 0;
-  for (int i = 0; i < kWidth; ++i) square |= kColumn << (i * kArenaSide);
-  touched |= square << (node / kArenaSide);
-}
-
-/// Adds particles to the arena, a segment at a time; `prepare(first, lanes, staged)` stages a pack of them.
-/// Returns the segments.
-template <class S, class T, class Prepare>
-REPOSE_INLINE std::size_t add_segments(std::size_t count, T* arena, std::uint64_t& touched, Prepare prepare) {
-  Staged<T> staged;
-  Row<T> rows[S::kWidth * S::kWidth];
-  HWY_UNROLL(16)
-  for (int r = 0; r < S::kWidth * S::kWidth; ++r) rows[r] = zero_row<T>();
-  const Row<T> z_positions = node_positions(T(S::kCenter));
-  std::int32_t node = -1;
-  std::size_t segments = 0;
-  for (const auto [first, lanes] : packs<T>(count)) {
-    prepare(first, lanes, staged);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (staged.stencil.node[lane] != node) {
-        if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
-        node = staged.stencil.node[lane];
-        ++segments;
+    for (int i = 0; i < kWidth; ++i) {
+      HWY_UNROLL(4)
+      for (int j = 0; j < kWidth; ++j) {
+        T* at = corner + (i * kArenaSide + j) * kArenaRow;
+        store_row(load_row(at) + rows_[i * kWidth + j], at);
+        rows_[i * kWidth + j] = zero_row<T>();
       }
-      add_particle<S>(staged, lane, z_positions, rows);
+    }
+    constexpr std::uint64_t kColumn = (1u << kWidth) - 1;
+    std::uint64_t square = 0;
+    for (int i = 0; i < kWidth; ++i) square |= kColumn << (i * kArenaSide);
+    touched_ |= square << (node_ / kArenaSide);
+  }
+  std::uint64_t touched() const { return touched_; }
+  std::size_t count() const { return count_; }
+
+ private:
+  T* arena_;
+  Row<T> z_positions_;
+  Rows<S, T> rows_;
+  std::int32_t node_ = -1;
+  std::uint64_t touched_ = 0;
+  std::size_t count_ = 0;
+};
+
+template <class Stencil, Affine affine, Force force, bool before, class T>
+std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched) {
+  using S = Loops<Stencil, affine, force, before>;
+  Staged<T> staged;
+  Segments<S, S::kSlope, S::kPush, T> segments(arena);
+  Segments<S, S::kAffine, false, T> segments_before(in.before);
+  for (const auto [first, lanes] : packs<T>(in.particles.count)) {
+    stage<Stencil, affine, force, before>(in, first, lanes, staged);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      segments.add(staged.momentum, staged, lane);
+      if constexpr (before) segments_before.add(staged.before, staged, lane);
     }
   }
-  if (node >= 0) flush<S::kWidth>(node, rows, arena, touched);
-  return segments;
-}
-
-template <class Stencil, Affine affine, Force force, class T>
-std::size_t scatter(const ScatterInput<T>& in, T* arena, std::uint64_t& touched) {
-  return add_segments<Loops<Stencil, affine, force>>(
-      in.particles.count, arena, touched,
-      [&in](std::size_t first, std::size_t lanes, Staged<T>& staged)
-          HWY_ATTR { stage<Stencil, affine, force>(in, first, lanes, staged); });
+  segments.end();
+  if constexpr (before) segments_before.end();
+  touched |= segments.touched();
+  return segments.count();
 }
 
 template <class Stencil, Force force, class T>
 void push(const PushInput<T>& in, T* arena, std::uint64_t& touched) {
-  add_segments<Loops<Stencil, Affine::kNone, force>>(
-      in.particles.count, arena, touched,
-      [&in](std::size_t first, std::size_t lanes, Staged<T>& staged)
-          HWY_ATTR { stage<Stencil, force>(in, first, lanes, staged); });
+  using S = Loops<Stencil, Affine::kNone, force>;
+  Staged<T> staged;
+  Segments<S, S::kSlope, S::kPush, T> segments(arena);
+  for (const auto [first, lanes] : packs<T>(in.particles.count)) {
+    stage<Stencil, force>(in, first, lanes, staged);
+    for (std::size_t lane = 0; lane < lanes; ++lane) segments.add(staged.momentum, staged, lane);
+  }
+  segments.end();
+  touched |= segments.touched();
 }
 
 template <class T>
 void fill_precision(Kernels<T>& table) {
   for_each_transfer([&]<class Stencil, class Transfer>(std::size_t s, std::size_t t) {
-    table.transfer[s][t].scatter = scatter<Stencil, Transfer::kAffine, force_of<Stencil, Transfer>(), T>;
+    constexpr Force kForce = force_of<Stencil, Transfer>();
+    table.transfer[s][t].scatter = scatter<Stencil, Transfer::kAffine, kForce, false, T>;
+    table.transfer[s][t].scatter_measuring = nullptr;
+    if constexpr (Transfer::kKeepsVelocity) {
+      table.transfer[s][t].scatter_measuring = scatter<Stencil, Transfer::kAffine, kForce, true, T>;
+    }
     table.transfer[s][t].push = push<Stencil, force_of<Stencil, Transfer>(), T>;
   });
 }

@@ -27,6 +27,9 @@ struct ScatterInput {
   Real impulse_volume;                    ///< dt V0, s m^3
   Real kept_stretching;                   ///< RPIC's share of (C + C^T)/2, in [0, 1]
   Lattice<Real> lattice;
+  // Where what particles have for themselves is measured: mass and momentum that have felt no force.
+  const Real* own_velocity[3];  ///< that of the particles, m/s, where their `velocity` holds a push too
+  Real* before;                 ///< the arena that they go to
 };
 
 /// What the next pass reads, values * count numbers from `from` on: a pass that computes much and reads little
@@ -41,16 +44,20 @@ struct Soon {
 /// channel.
 template <class Real>
 struct GatherInput {
-  ParticleSpan<Real> particles;  ///< positions are read, and velocities where `before` is given
+  ParticleSpan<Real> particles;  ///< positions are read, and velocities where what is their own is measured
   Lattice<Real> lattice;
   Real* velocity[3];                  ///< out: v that the particle keeps, m/s
   Real* affine[kAffineComponents];    ///< out: C that it keeps, 1/s; only where the transfer keeps one
   Real* moving[3];                    ///< out: sum w v_i, which moves it, m/s
   Real* gradient[kAffineComponents];  ///< out: gradient of velocity, which strains it, 1/s; with forces by
                                       ///< moments it is C
-  const Real* before[3];              ///< sum w v_i before forces, m/s; null unless the transfer keeps velocity
-  Real kept_velocity;                 ///< share of its own velocity that a particle keeps, in [0, 1]
-  Soon<Real> soon;                    ///< asked for meanwhile
+  Real* mass;  ///< out: sum w m_i, kg
+  // Where the transfer keeps velocity:
+  Real* own[3];        ///< what particles have for themselves, m/s: read, or measured, and written
+  const Real* before;  ///< arena of v_i before forces, m/s, to measure it against
+  Real kept_velocity;  ///< share of it that is kept, in [0, 1]
+  Real dt;             ///< of the step, s
+  Soon<Real> soon;     ///< asked for meanwhile
 };
 
 /// Pushes of particles on nodes: node i receives -scale S g_i, g_i the gradient of its weight.
@@ -77,6 +84,9 @@ struct TransferKernels {
   /// segments.
   std::size_t (*scatter)(const ScatterInput<Real>&, Real* arena, std::uint64_t& rows);
   void (*gather)(const GatherInput<Real>&, const Real* arena);
+  /// The same, and what particles have for themselves is measured; null unless the transfer keeps velocity.
+  std::size_t (*scatter_measuring)(const ScatterInput<Real>&, Real* arena, std::uint64_t& rows);
+  void (*gather_measuring)(const GatherInput<Real>&, const Real* arena);
   /// The gradient alone, and the push that is its transpose: momentum and rows as in scatter.
   void (*gradient)(const GatherInput<Real>&, const Real* arena);
   void (*push)(const PushInput<Real>&, Real* arena, std::uint64_t& rows);
@@ -89,8 +99,6 @@ struct StencilKernels {
   /// Adds the rows of an arena to the blocks around it, or loads them; null blocks are passed over.
   void (*add_arena)(const Real* arena, std::uint64_t rows, Real* const blocks[kNeighbours]);
   void (*load_arena)(Real* arena, std::uint64_t rows, const Real* const blocks[kNeighbours]);
-  /// velocity <- sum w v_i
-  void (*interpolate)(const ParticleSpan<Real>&, int flat_axis, const Real* arena, Real* const velocity[3]);
 };
 
 }  // namespace repose

@@ -116,40 +116,66 @@ int base_node(std::size_t stencil, double position) {
 }
 
 template <class Real>
-void scatter(std::size_t stencil, std::size_t transfer, const ScatterInput<Real>& in, double* arena) {
+void scatter(std::size_t stencil, std::size_t transfer, const ScatterInput<Real>& in, double* arena,
+             double* before) {
   const double dx = in.lattice.spacing, m = in.mass, dt_v0 = in.impulse_volume;
   const bool moments = by_moments(stencil, transfer);
   for (std::size_t p = 0; p < in.particles.count; ++p) {
     const Matrix a = p2g_affine(kTransferFigures[transfer].affine, in, p);
     for_each_node(stencil, in.particles, p, in.lattice.flat_axis, dx, [&](const Neighbour& node) {
-      double* to = arena + node.arena_place;
-      to[0] += node.weight * m;
+      arena[node.arena_place] += node.weight * m;
+      if (before != nullptr) before[node.arena_place] += node.weight * m;
       for (int row = 0; row < 3; ++row) {
-        double v = in.particles.velocity[row][p], impulse = 0;
+        double slope = 0, impulse = 0;
         for (int axis = 0; axis < 3; ++axis) {
-          v += a[row][axis] * node.distance[axis];
+          slope += a[row][axis] * node.distance[axis];
           const double along =
               moments ? inverse_d(stencil, dx, axis == in.lattice.flat_axis) * node.weight * node.distance[axis]
                       : node.gradient[axis];
           impulse -= dt_v0 * in.stress[kSymmetric[row][axis]][p] * along;
         }
-        to[1 + row] += node.weight * m * v + impulse;
+        const std::size_t place = node.arena_place + 1 + static_cast<std::size_t>(row);
+        arena[place] += node.weight * m * (in.particles.velocity[row][p] + slope) + impulse;
+        if (before != nullptr) before[place] += node.weight * m * (in.own_velocity[row][p] + slope);
       }
     });
   }
 }
 
+namespace {
+
+/// C - dt W W, W the skew part of C; across plane strain nothing turns.
+Matrix turned(const Matrix& c, double dt, int flat_axis) {
+  Matrix w{}, result = c;
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (row != flat_axis && axis != flat_axis) w[row][axis] = (c[row][axis] - c[axis][row]) / 2;
+    }
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < 3; ++k) result[row][axis] -= dt * w[row][k] * w[k][axis];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 template <class Real>
 void gather(std::size_t stencil, std::size_t transfer, const GatherInput<Real>& in, const Real* arena) {
   const double dx = in.lattice.spacing;
   const bool keeps_affine = kTransferFigures[transfer].affine != Affine::kNone;
+  const bool keeps_velocity = kTransferFigures[transfer].keeps_velocity;
   for (std::size_t p = 0; p < in.particles.count; ++p) {
-    double v[3] = {};
+    double v[3] = {}, before[3] = {}, mass = 0;
     Matrix moment{}, gradient{};
     for_each_node(stencil, in.particles, p, in.lattice.flat_axis, dx, [&](const Neighbour& node) {
+      mass += node.weight * arena[node.arena_place];
       for (int row = 0; row < 3; ++row) {
         const double nodal = arena[node.arena_place + 1 + row];
         v[row] += node.weight * nodal;
+        if (in.before != nullptr) before[row] += node.weight * in.before[node.arena_place + 1 + row];
         for (int axis = 0; axis < 3; ++axis) {
           moment[row][axis] +=
               inverse_d(stencil, dx, axis == in.lattice.flat_axis) * node.weight * nodal * node.distance[axis];
@@ -157,14 +183,22 @@ void gather(std::size_t stencil, std::size_t transfer, const GatherInput<Real>& 
         }
       }
     });
-    const Matrix& c = stencil == kLinear ? gradient : moment;
+    if (in.mass) in.mass[p] = static_cast<Real>(mass);
+    const Matrix& slopes = stencil == kLinear ? gradient : moment;
+    const Matrix c = keeps_velocity ? turned(slopes, double{in.dt}, in.lattice.flat_axis) : slopes;
     const Matrix& strains = by_moments(stencil, transfer) ? moment : gradient;
     for (int row = 0; row < 3; ++row) {
-      double kept = v[row];
-      if (in.before[row])
-        kept += in.kept_velocity * (double{in.particles.velocity[row][p]} - in.before[row][p]);
-      if (in.velocity[row]) in.velocity[row][p] = static_cast<Real>(kept);
       if (in.moving[row]) in.moving[row][p] = static_cast<Real>(v[row]);
+      if (!in.velocity[row]) continue;
+      double kept = v[row];
+      if (keeps_velocity) {
+        double own = in.own[row][p];
+        if (in.before != nullptr) own = double{in.particles.velocity[row][p]} - before[row];
+        own *= in.kept_velocity;
+        in.own[row][p] = static_cast<Real>(own);
+        kept += own;
+      }
+      in.velocity[row][p] = static_cast<Real>(kept);
     }
     for (int k = 0; k < 9; ++k) {
       if (in.affine[k] && keeps_affine) in.affine[k][p] = static_cast<Real>(c[k / 3][k % 3]);
@@ -173,22 +207,9 @@ void gather(std::size_t stencil, std::size_t transfer, const GatherInput<Real>& 
   }
 }
 
-template <class Real>
-void interpolate(std::size_t stencil, const ParticleSpan<Real>& particles, int flat_axis, const Real* arena,
-                 Real* const velocity[3]) {
-  for (std::size_t p = 0; p < particles.count; ++p) {
-    double v[3] = {};
-    for_each_node(stencil, particles, p, flat_axis, 1.0, [&](const Neighbour& node) {
-      for (int row = 0; row < 3; ++row) v[row] += node.weight * arena[node.arena_place + 1 + row];
-    });
-    for (int row = 0; row < 3; ++row) velocity[row][p] = static_cast<Real>(v[row]);
-  }
-}
-
-#define REPOSE_FOR(Real)                                                                 \
-  template void scatter(std::size_t, std::size_t, const ScatterInput<Real>&, double*);   \
-  template void gather(std::size_t, std::size_t, const GatherInput<Real>&, const Real*); \
-  template void interpolate(std::size_t, const ParticleSpan<Real>&, int, const Real*, Real* const[3]);
+#define REPOSE_FOR(Real)                                                                        \
+  template void scatter(std::size_t, std::size_t, const ScatterInput<Real>&, double*, double*); \
+  template void gather(std::size_t, std::size_t, const GatherInput<Real>&, const Real*);
 REPOSE_FOR(float)
 REPOSE_FOR(double)
 #undef REPOSE_FOR

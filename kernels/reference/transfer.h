@@ -17,17 +17,15 @@ double slope(std::size_t stencil, double distance);
 /// First node of the stencil of a particle at `position` cells.
 int base_node(std::size_t stencil, double position);
 
-/// Adds mass and momentum to the arena, kArenaValues long.
+/// Adds mass and momentum to the arena, kArenaValues long; and what they are before forces to `before`, where
+/// that is given.
 template <class Real>
-void scatter(std::size_t stencil, std::size_t transfer, const ScatterInput<Real>& in, double* arena);
+void scatter(std::size_t stencil, std::size_t transfer, const ScatterInput<Real>& in, double* arena,
+             double* before = nullptr);
 
-/// Writes what is wanted, rounded to Real.
+/// Writes what is wanted, rounded to Real. What particles have for themselves is measured where `in.before` is
+/// given.
 template <class Real>
 void gather(std::size_t stencil, std::size_t transfer, const GatherInput<Real>& in, const Real* arena);
-
-/// velocity <- sum w v_i
-template <class Real>
-void interpolate(std::size_t stencil, const ParticleSpan<Real>& particles, int flat_axis, const Real* arena,
-                 Real* const velocity[3]);
 
 }  // namespace repose::reference

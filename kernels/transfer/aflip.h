@@ -1,5 +1,5 @@
-// Repose: affine fluid implicit particle (Fei et al. 2021): MLS-APIC whose particles keep a share of their own
-// velocity, as FLIP does: less is damped than in either.
+// Repose: affine fluid implicit particle (Fei et al. 2021): MLS-APIC whose particles keep velocity of their own,
+// as FLIP does. What they lose of it is a rate, so smaller steps lose no more (docs/math.md, section 47).
 #pragma once
 
 #include "kernels/transfer/transfer.h"
@@ -9,7 +9,7 @@ namespace repose {
 struct AflipTransfer {
   static constexpr const char* kName = "aflip";
   static constexpr const char* kMeaning =
-      "mls_apic that keeps the share grid.kept_velocity of a particle's own velocity, Fei et al. 2021";
+      "mls_apic whose particles keep velocity of their own, less grid.velocity_loss, Fei et al. 2021";
   static constexpr Affine kAffine = Affine::kFull;
   static constexpr Force kForce = Force::kMoments;
   static constexpr bool kKeepsVelocity = true;

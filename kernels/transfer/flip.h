@@ -10,7 +10,7 @@ namespace repose {
 struct FlipTransfer {
   static constexpr const char* kName = "flip";
   static constexpr const char* kMeaning =
-      "fluid-implicit-particle: keeps the share grid.kept_velocity of a particle's own velocity";
+      "fluid-implicit-particle: particles keep velocity of their own, less grid.velocity_loss";
   static constexpr Affine kAffine = Affine::kNone;
   static constexpr Force kForce = Force::kGradients;
   static constexpr bool kKeepsVelocity = true;

@@ -2,8 +2,8 @@
 // m tells node i the momentum
 //   w m (v + A (x_i - x_p)) + dt f_i,      A = C, its skew part and some of the rest, or 0,
 // and from the nodes come v = sum w v_i and C = D^-1 sum w v_i (x_i - x_p)^T (Klar et al. 2016, eqs. 7-12).
-// They differ in the matrix A, in how stress pushes nodes, and in whether a particle keeps some of its own
-// velocity:
+// They differ in the matrix A, in how stress pushes nodes, and in whether particles keep velocity of their own, v
+// less what nodes tell of it before forces:
 //   forces by moments    f_i = -V0 tau D^-1 w (x_i - x_p), gradient of velocity C    (MLS form, Hu et al. 2018)
 //   forces by gradients  f_i = -V0 tau grad w, gradient of velocity sum v_i grad w^T    (Klar et al. 2016)
 #pragma once

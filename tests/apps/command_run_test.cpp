@@ -198,12 +198,12 @@ TEST_F(CommandRun, Quality_IsWhatItsHelpSays) {
                     reference = scene_of("reference");
   EXPECT_EQ(standard, unsaid);
   EXPECT_DOUBLE_EQ(draft["grid"]["spacing"].asDouble(), 2.0 * unsaid["grid"]["spacing"].asDouble());
-  EXPECT_DOUBLE_EQ(reference["time"]["sound"].asDouble(), 0.25);
+  EXPECT_DOUBLE_EQ(reference["grid"]["spacing"].asDouble(), 0.5 * unsaid["grid"]["spacing"].asDouble());
   const auto row = [&](const std::string& quality) {
     return read_json(path(quality + "/run.json"))["frames"][0];
   };
   EXPECT_EQ(row("draft")["particles"], 125);
-  EXPECT_EQ(row("reference")["particles"], 1000);
+  EXPECT_EQ(row("reference")["particles"], 8000);
   EXPECT_EQ(row("standard")["hash"], row("unsaid")["hash"]);
   EXPECT_NEAR(row("reference")["steps"].asDouble(), 2.0 * row("unsaid")["steps"].asDouble(), 1.0);
   EXPECT_EQ(read_json(path("draft/run.json"))["scene"]["quality"], "draft");

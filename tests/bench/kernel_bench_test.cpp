@@ -38,7 +38,7 @@ Finished kernel_bench(const std::string& words, const std::string& before = "") 
 
 /// One kernel of every kind, in every precision and instruction set.
 constexpr const char* kSome =
-    "--benchmark_filter='^(scatter/quadratic/mls_apic|gather/cubic/flip|interpolate/linear|trial/elastic|"
+    "--benchmark_filter='^(scatter/quadratic/mls_apic|gather/cubic/flip|scatter/linear/flip/measuring|trial/elastic|"
     "return_map(_per_particle)?/drucker_prager|stress/"
     "elastic|harden|strengthen|cut_tension|advance|first_failed|open_volume|close_volume|add_arena/quadratic|"
     "load_arena/linear|normalize|accelerate|bound)/(float|double)/[a-z0-9]+/cache'";

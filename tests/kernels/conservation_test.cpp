@@ -96,7 +96,8 @@ std::uint64_t to_blocks(Target target, Particles<Real>& particles, const Transfe
                         NodeBlocks<Real>& blocks) {
   Arena<Real> arena(kArenaValues, Real(0));
   std::uint64_t rows = 0;
-  transfer.kernel<Real>(target).scatter(particles.scatter_input(transfer), arena.data(), rows);
+  Arena<Real> before(kArenaValues, Real(0));
+  transfer.scatter<Real>(target)(particles.scatter_input(transfer, before.data()), arena.data(), rows);
   transfer.stencil_kernel<Real>(target).add_arena(arena.data(), rows, blocks.pointers);
   return rows;
 }
@@ -113,13 +114,14 @@ void to_particles(Target target, NodeBlocks<Real>& blocks, std::uint64_t rows, c
   in.kept_velocity = static_cast<Real>(transfer.kept_velocity);
   std::copy_n(in.particles.velocity, 3, in.velocity);
   if (transfer.keeps_affine()) std::copy_n(in.particles.affine, kAffineComponents, in.affine);
-  Gathered<Real> scratch(particles.count);
-  if (transfer.figures().keeps_velocity) {
-    Real* const before[3] = {scratch.before[0].data(), scratch.before[1].data(), scratch.before[2].data()};
-    transfer.stencil_kernel<Real>(target).interpolate(in.particles, -1, arena.data(), before);
-    std::copy_n(before, 3, in.before);
+  in.dt = static_cast<Real>(transfer.dt);
+  std::vector<Real> own[3];
+  for (int k = 0; k < 3; ++k) {
+    own[k].assign(particles.count, Real(0));
+    in.own[k] = own[k].data();
   }
-  transfer.kernel<Real>(target).gather(in, arena.data());
+  if (transfer.measures) in.before = arena.data();
+  transfer.gather<Real>(target)(in, arena.data());
 }
 
 TYPED_TEST(Conservation, ScatterNormalizeGather_KeepsMassMomentumAndSpin) {
@@ -128,7 +130,7 @@ TYPED_TEST(Conservation, ScatterNormalizeGather_KeepsMassMomentumAndSpin) {
     transfer.impulse_volume = 0;
     for (const Target target : supported_targets()) {
       const std::string what = transfer.name() + ", " + target_name(target);
-      auto particles = random_particles<TypeParam>(128, Order::kRuns, 300, transfer.stencil);
+      auto particles = random_particles<TypeParam>(128, Order::kSegments, 300, transfer.stencil);
       const Momenta before = momenta(particles, transfer, Part::kTold);
       NodeBlocks<TypeParam> blocks;
       const std::uint64_t rows = to_blocks(target, particles, transfer, blocks);
@@ -141,8 +143,9 @@ TYPED_TEST(Conservation, ScatterNormalizeGather_KeepsMassMomentumAndSpin) {
       const Momenta after = momenta(particles, transfer, Part::kKept);
       expect_linear(after, before, kBound, what);
       // A particle that keeps velocity of its own and a matrix as well has more than the nodes gave it.
-      if (transfer.keeps_affine() && !transfer.figures().keeps_velocity)
-        expect_angular(after, before, kBound, what);
+      // Where D varies, turning the stretching of C changes its moments.
+      const bool turns = transfer.figures().keeps_velocity && !transfer.nodes().constant_d;
+      if (transfer.keeps_affine() && !transfer.measures && !turns) expect_angular(after, before, kBound, what);
     }
   }
 }
@@ -183,6 +186,7 @@ TYPED_TEST(Conservation, RigidTurn_IsReproducedByMatricesAndLostByPic) {
   for (TransferCase transfer : all_cases()) {
     transfer.impulse_volume = 0;
     transfer.kept_stretching = 0;
+    transfer.dt = 0;  // what turns is another slope at the end of the step
     for (const Target target : supported_targets()) {
       const std::string what = transfer.name() + ", " + target_name(target);
       auto particles = rigid_particles<TypeParam>(transfer);

@@ -1,5 +1,5 @@
-// Repose tests: what a gather writes: what is asked for and nothing else, the share of a particle's own
-// velocity, and the interpolation alone.
+// Repose tests: what a gather writes: what is asked for and nothing else, and the velocity that particles have
+// for themselves.
 #include <gtest/gtest.h>
 
 #include "tests/kernels/transfer_rig.h"
@@ -41,13 +41,13 @@ TYPED_TEST(GatherOutputs, EverySubset_WritesThatAndNothingElse) {
     const auto untouched = particles;
     for (const Target target : supported_targets()) {
       Gathered<TypeParam> all(particles.count);
-      transfer.kernel<TypeParam>(target).gather(all.input(particles, transfer), arena.data());
+      transfer.gather<TypeParam>(target)(all.input(particles, transfer), arena.data());
       for (int dropped = 0; dropped < 16; ++dropped) {
         const bool no_v = dropped & 1, no_c = dropped & 2, no_moving = dropped & 4, no_gradient = dropped & 8;
         Gathered<TypeParam> some(particles.count);
         auto in = some.input(particles, transfer);
         drop(in, no_v, no_c, no_moving, no_gradient);
-        transfer.kernel<TypeParam>(target).gather(in, arena.data());
+        transfer.gather<TypeParam>(target)(in, arena.data());
         const std::string what = transfer.name() + ", " + target_name(target);
         expect_same_or_untouched(some.velocity, all.velocity, !no_v, what);
         expect_same_or_untouched(some.affine, all.affine, !no_c && transfer.keeps_affine(), what);
@@ -71,11 +71,11 @@ TYPED_TEST(GatherOutputs, OwnChannels_SameAsOtherArrays) {
     for (const Target target : supported_targets()) {
       auto apart = start, own = start;
       Gathered<TypeParam> expected(start.count), unused(start.count);
-      transfer.kernel<TypeParam>(target).gather(expected.input(apart, transfer), arena.data());
+      transfer.gather<TypeParam>(target)(expected.input(apart, transfer), arena.data());
       auto in = unused.input(own, transfer);
       for (int k = 0; k < 3; ++k) in.velocity[k] = own.velocity[k].data();
       for (int k = 0; k < 9 && transfer.keeps_affine(); ++k) in.affine[k] = own.affine[k].data();
-      transfer.kernel<TypeParam>(target).gather(in, arena.data());
+      transfer.gather<TypeParam>(target)(in, arena.data());
       for (int k = 0; k < 3; ++k) {
         EXPECT_EQ(own.velocity[k], expected.velocity[k]) << transfer.name() << ", " << target_name(target);
       }
@@ -88,39 +88,35 @@ TYPED_TEST(GatherOutputs, OwnChannels_SameAsOtherArrays) {
   }
 }
 
-TYPED_TEST(GatherOutputs, KeptVelocityZero_EqualsNoKeeping) {
+TYPED_TEST(GatherOutputs, KeptVelocityZero_IsThatOfTheNodes) {
   const auto arena = random_arena<TypeParam>(320);
   for (TransferCase transfer : all_cases()) {
     if (!transfer.figures().keeps_velocity) continue;
+    transfer.kept_velocity = 0;
     auto particles = random_particles<TypeParam>(37, Order::kScattered, 321, transfer.stencil);
     for (const Target target : supported_targets()) {
-      Gathered<TypeParam> keeping(particles.count), plain(particles.count);
-      transfer.kept_velocity = 0;
-      transfer.kernel<TypeParam>(target).gather(keeping.input(particles, transfer), arena.data());
-      auto in = plain.input(particles, transfer);
-      std::fill_n(in.before, 3, nullptr);
-      transfer.kernel<TypeParam>(target).gather(in, arena.data());
+      Gathered<TypeParam> result(particles.count);
+      transfer.gather<TypeParam>(target)(result.input(particles, transfer), arena.data());
       for (int k = 0; k < 3; ++k) {
-        EXPECT_EQ(keeping.velocity[k], plain.velocity[k]) << transfer.name() << ", " << target_name(target);
-        EXPECT_EQ(keeping.velocity[k], keeping.moving[k]) << transfer.name() << ", " << target_name(target);
+        EXPECT_EQ(result.velocity[k], result.moving[k]) << transfer.name() << ", " << target_name(target);
+        for (std::size_t p = 0; p < particles.count; ++p) ASSERT_EQ(result.own[k][p], TypeParam(0));
       }
     }
   }
 }
 
 /// With all of it kept, nodes that no force changed leave a particle's velocity alone.
-TYPED_TEST(GatherOutputs, KeptVelocityOne_NodesUnchanged_OwnVelocityStays) {
+TYPED_TEST(GatherOutputs, KeptVelocityOne_NodesUnchanged_VelocityStays) {
   const auto arena = random_arena<TypeParam>(330);
   for (TransferCase transfer : all_cases()) {
-    if (!transfer.figures().keeps_velocity) continue;
+    if (!transfer.measures) continue;
     transfer.kept_velocity = 1;
     auto particles = random_particles<TypeParam>(37, Order::kScattered, 331, transfer.stencil);
     for (const Target target : supported_targets()) {
       Gathered<TypeParam> result(particles.count);
-      const auto in = result.input(particles, transfer);
-      TypeParam* const before[3] = {result.before[0].data(), result.before[1].data(), result.before[2].data()};
-      transfer.stencil_kernel<TypeParam>(target).interpolate(in.particles, -1, arena.data(), before);
-      transfer.kernel<TypeParam>(target).gather(in, arena.data());
+      auto in = result.input(particles, transfer);
+      in.before = arena.data();
+      transfer.gather<TypeParam>(target)(in, arena.data());
       for (int k = 0; k < 3; ++k) {
         for (std::size_t p = 0; p < particles.count; ++p) {
           ASSERT_NEAR(result.velocity[k][p], particles.velocity[k][p], kTransferTolerance<TypeParam>)
@@ -131,29 +127,21 @@ TYPED_TEST(GatherOutputs, KeptVelocityOne_NodesUnchanged_OwnVelocityStays) {
   }
 }
 
-TYPED_TEST(GatherOutputs, Interpolate_EveryCountOrderAndFlatAxis_MatchesTheReference) {
+/// What was measured goes on top of what nodes say, and fades.
+TYPED_TEST(GatherOutputs, OwnVelocityHeld_IsAddedAndFades) {
   const auto arena = random_arena<TypeParam>(340);
-  for (const TransferCase& transfer : all_stencils()) {
-    for (const Order order : {Order::kRuns, Order::kScattered}) {
-      for (const std::size_t count : {0, 1, 7, 16, 17, 127, 128}) {
-        auto particles = random_particles<TypeParam>(count, order, 341 + count, transfer.stencil);
-        for (const int flat_axis : {-1, 0, 1, 2}) {
-          Particles<TypeParam> expected = particles;
-          const auto there = expected.span();
-          reference::interpolate(transfer.stencil, particles.span(), flat_axis, arena.data(), there.velocity);
-          for (const Target target : supported_targets()) {
-            Particles<TypeParam> result = particles;
-            const auto here = result.span();
-            transfer.stencil_kernel<TypeParam>(target).interpolate(particles.span(), flat_axis, arena.data(),
-                                                                   here.velocity);
-            EXPECT_TRUE(result.canaries_alive()) << transfer.nodes().name << ", " << target_name(target);
-            for (int k = 0; k < 3; ++k) {
-              for (std::size_t p = 0; p < count; ++p) {
-                ASSERT_NEAR(result.velocity[k][p], expected.velocity[k][p], kTransferTolerance<TypeParam>)
-                    << transfer.nodes().name << ", " << target_name(target) << ", " << count << " particles";
-              }
-            }
-          }
+  for (const TransferCase& transfer : all_cases()) {
+    if (!transfer.figures().keeps_velocity || transfer.measures) continue;
+    auto particles = random_particles<TypeParam>(37, Order::kScattered, 341, transfer.stencil);
+    for (const Target target : supported_targets()) {
+      Gathered<TypeParam> result(particles.count);
+      transfer.gather<TypeParam>(target)(result.input(particles, transfer), arena.data());
+      for (int k = 0; k < 3; ++k) {
+        for (std::size_t p = 0; p < particles.count; ++p) {
+          const double left = transfer.kept_velocity * particles.own[k][p];
+          ASSERT_NEAR(result.own[k][p], left, kTransferTolerance<TypeParam>) << transfer.name();
+          ASSERT_NEAR(result.velocity[k][p], result.moving[k][p] + left, kTransferTolerance<TypeParam>)
+              << transfer.name();
         }
       }
     }

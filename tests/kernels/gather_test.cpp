@@ -23,7 +23,7 @@ template <class Real>
 Gathered<Real> gather(Target target, Particles<Real>& particles, const TransferCase& transfer,
                       const Arena<Real>& arena) {
   Gathered<Real> result(particles.count);
-  transfer.kernel<Real>(target).gather(result.input(particles, transfer), arena.data());
+  transfer.gather<Real>(target)(result.input(particles, transfer), arena.data());
   EXPECT_TRUE(result.canaries_alive() && particles.canaries_alive()) << what(transfer, target, particles.count);
   return result;
 }
@@ -39,7 +39,7 @@ Gathered<Real> reference_gather(Particles<Real>& particles, const TransferCase& 
 TYPED_TEST(Gather, RandomNodes_EveryCountAndOrder_MatchTheReference) {
   const auto arena = random_arena<TypeParam>(200);
   for (const TransferCase& transfer : all_cases()) {
-    for (const Order order : {Order::kRuns, Order::kScattered}) {
+    for (const Order order : {Order::kSegments, Order::kScattered}) {
       for (const std::size_t count : kCounts) {
         auto particles = random_particles<TypeParam>(count, order, 210 + count, transfer.stencil);
         const auto expected = reference_gather(particles, transfer, arena);
@@ -78,7 +78,8 @@ TYPED_TEST(Gather, FlatAxis_EveryAxis_MatchesTheReferenceWithoutGradient) {
 TYPED_TEST(Gather, AffineField_IsReproduced) {
   constexpr double kVelocity[3] = {0.3, -0.2, 0.1};
   constexpr double kSlope[3][3] = {{0.05, -0.1, 0.02}, {0.07, 0.03, -0.04}, {-0.06, 0.08, 0.01}};  // m/s a cell
-  for (const TransferCase& transfer : all_cases()) {
+  for (TransferCase transfer : all_cases()) {
+    transfer.dt = 0;  // what turns is another slope at the end of the step
     Arena<TypeParam> arena(kArenaValues, TypeParam(0));
     const auto field = [&](int row, const auto* x) {
       return kVelocity[row] + kSlope[row][0] * x[0] + kSlope[row][1] * x[1] + kSlope[row][2] * x[2];

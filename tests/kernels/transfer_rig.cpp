@@ -35,13 +35,13 @@ std::vector<std::array<Real, 3>> random_positions(std::size_t count, Order order
   std::vector<std::array<Real, 3>> positions(count);
   for (auto& position : positions) {
     for (Real& x : position) {
-      const int cell = order == Order::kRuns ? static_cast<int>(samples.index(2)) * (places - 1)
-                                             : static_cast<int>(samples.index(places));
+      const int cell = order == Order::kSegments ? static_cast<int>(samples.index(2)) * (places - 1)
+                                                 : static_cast<int>(samples.index(places));
       // A cell's end has the next base node already: stay below it after rounding.
       x = static_cast<Real>(nodes.lowest_base + cell + nodes.base_shift + samples.uniform(0, 0.9999));
     }
   }
-  if (order == Order::kRuns) {
+  if (order == Order::kSegments) {
     std::sort(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
       const auto base = [&](const auto& x) {
         return std::array{reference::base_node(stencil, x[0]), reference::base_node(stencil, x[1]),
@@ -69,6 +69,9 @@ std::vector<TransferCase> all_cases() {
   for (std::size_t stencil = 0; stencil < kStencilFigures.size(); ++stencil) {
     for (std::size_t transfer = 0; transfer < kTransferFigures.size(); ++transfer) {
       cases.push_back({stencil, transfer});
+      if (!kTransferFigures[transfer].keeps_velocity) continue;
+      cases.push_back({stencil, transfer});
+      cases.back().measures = true;
     }
   }
   return cases;
@@ -88,7 +91,7 @@ int stencil_width(std::size_t stencil) {
 
 template <class Real>
 Particles<Real>::Particles(std::size_t size) : count(size) {
-  for (auto* channels : {position, velocity}) {
+  for (auto* channels : {position, velocity, own}) {
     for (int k = 0; k < 3; ++k) append_canary(channels[k], size);
   }
   for (auto& channel : affine) append_canary(channel, size);
@@ -109,7 +112,7 @@ ParticleSpan<Real> Particles<Real>::span() {
 }
 
 template <class Real>
-ScatterInput<Real> Particles<Real>::scatter_input(const TransferCase& transfer) {
+ScatterInput<Real> Particles<Real>::scatter_input(const TransferCase& transfer, Real* before) {
   ScatterInput<Real> in{};
   in.particles = span();
   for (int k = 0; k < kStrainComponents; ++k) in.stress[k] = stress[k].data();
@@ -117,12 +120,14 @@ ScatterInput<Real> Particles<Real>::scatter_input(const TransferCase& transfer) 
   in.impulse_volume = static_cast<Real>(transfer.impulse_volume);
   in.kept_stretching = static_cast<Real>(transfer.kept_stretching);
   in.lattice = transfer.lattice<Real>();
+  for (int k = 0; k < 3; ++k) in.own_velocity[k] = own[k].data();
+  in.before = before;
   return in;
 }
 
 template <class Real>
 bool Particles<Real>::canaries_alive() const {
-  return alive(position) && alive(velocity) && alive(affine) && alive(strain) && alive(stress);
+  return alive(position) && alive(velocity) && alive(affine) && alive(strain) && alive(stress) && alive(own);
 }
 
 template <class Real>
@@ -136,6 +141,7 @@ Particles<Real> random_particles(std::size_t count, Order order, std::uint64_t s
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t p = 0; p < count; ++p) particles.position[axis][p] = positions[p][axis];
     fill(particles.velocity[axis], 1.0);
+    fill(particles.own[axis], 1.0);
   }
   for (auto& channel : particles.affine) fill(channel, 1 / TransferCase().spacing);
   for (auto& channel : particles.strain) fill(channel, 0.1);
@@ -154,10 +160,9 @@ Arena<Real> random_arena(std::uint64_t seed) {
 }
 
 template <class Real>
-Arena<double> reference_scatter(Particles<Real>& particles, const TransferCase& transfer) {
-  Arena<double> arena(kArenaValues, 0.0);
-  reference::scatter(transfer.stencil, transfer.transfer, particles.scatter_input(transfer), arena.data());
-  return arena;
+ScatteredReference<Real>::ScatteredReference(Particles<Real>& particles, const TransferCase& transfer) {
+  reference::scatter(transfer.stencil, transfer.transfer, particles.scatter_input(transfer), arena.data(),
+                     transfer.measures ? before.data() : nullptr);
 }
 
 template <class Real>
@@ -181,7 +186,7 @@ Touched touched_by(const Particles<Real>& particles, std::size_t stencil) {
 
 template <class Real>
 Gathered<Real>::Gathered(std::size_t count) {
-  for (auto* channels : {velocity, moving, before}) {
+  for (auto* channels : {velocity, moving, own}) {
     for (int k = 0; k < 3; ++k) append_canary(channels[k], count);
   }
   for (auto* channels : {affine, gradient}) {
@@ -195,13 +200,17 @@ GatherInput<Real> Gathered<Real>::input(Particles<Real>& particles, const Transf
   in.particles = particles.span();
   in.lattice = transfer.lattice<Real>();
   in.kept_velocity = static_cast<Real>(transfer.kept_velocity);
-  Samples samples(77);
+  in.dt = static_cast<Real>(transfer.dt);
+  if (transfer.measures) {
+    before = random_arena<Real>(77);
+    in.before = before.data();
+  }
   for (int k = 0; k < 3; ++k) {
     in.velocity[k] = velocity[k].data();
     in.moving[k] = moving[k].data();
     if (!transfer.figures().keeps_velocity) continue;
-    for (std::size_t p = 0; p < particles.count; ++p) before[k][p] = static_cast<Real>(samples.uniform(-1, 1));
-    in.before[k] = before[k].data();
+    own[k] = particles.own[k];
+    in.own[k] = own[k].data();
   }
   for (int k = 0; k < kAffineComponents; ++k) {
     if (transfer.keeps_affine()) in.affine[k] = affine[k].data();
@@ -212,7 +221,7 @@ GatherInput<Real> Gathered<Real>::input(Particles<Real>& particles, const Transf
 
 template <class Real>
 bool Gathered<Real>::canaries_alive() const {
-  return alive(velocity) && alive(affine) && alive(moving) && alive(gradient) && alive(before);
+  return alive(velocity) && alive(affine) && alive(moving) && alive(gradient) && alive(own);
 }
 
 template <class Real>
@@ -238,6 +247,7 @@ void expect_near(const Gathered<Real>& result, const Gathered<Real>& expected, c
   const double steepest = tolerance * transfer.nodes().inverse_d / transfer.spacing;
   expect_channels(result.velocity, expected.velocity, tolerance, what + ", velocity");
   expect_channels(result.moving, expected.moving, tolerance, what + ", moving");
+  expect_channels(result.own, expected.own, tolerance, what + ", own");
   expect_channels(result.affine, expected.affine, steepest, what + ", affine");
   expect_channels(result.gradient, expected.gradient, steepest, what + ", gradient");
 }
@@ -248,7 +258,7 @@ void expect_near(const Gathered<Real>& result, const Gathered<Real>& expected, c
   template struct Gathered<Real>;                                                                  \
   template Particles<Real> random_particles<Real>(std::size_t, Order, std::uint64_t, std::size_t); \
   template Arena<Real> random_arena<Real>(std::uint64_t);                                          \
-  template Arena<double> reference_scatter(Particles<Real>&, const TransferCase&);                 \
+  template struct ScatteredReference<Real>;                                                        \
   template Touched touched_by(const Particles<Real>&, std::size_t);                                \
   template void expect_near(const Arena<Real>&, const Arena<double>&, double, const std::string&); \
   template void expect_near(const Gathered<Real>&, const Gathered<Real>&, const TransferCase&,     \

@@ -20,6 +20,8 @@ struct TransferCase {
   double spacing = 0.01;             // m
   double impulse_volume = 1.25e-11;  // dt V0, s m^3
   double kept_velocity = 0.75;
+  double dt = 1e-3;       // s
+  bool measures = false;  // what particles have for themselves, where the transfer keeps velocity
   double kept_stretching = 0.375;
   int flat_axis = -1;
 
@@ -28,8 +30,10 @@ struct TransferCase {
   bool keeps_affine() const { return figures().affine != Affine::kNone; }
   /// First node of an arena along every axis.
   int origin() const { return nodes().lowest_base; }
-  /// "cubic flip".
-  std::string name() const { return std::string(nodes().name) + ' ' + kTransferChoices[transfer].name; }
+  /// "cubic flip", "cubic flip measuring".
+  std::string name() const {
+    return std::string(nodes().name) + ' ' + kTransferChoices[transfer].name + (measures ? " measuring" : "");
+  }
 
   template <class Real>
   Lattice<Real> lattice() const;
@@ -38,12 +42,20 @@ struct TransferCase {
     return kernels<Real>(target).transfer[stencil][transfer];
   }
   template <class Real>
+  auto scatter(Target target) const {
+    return measures ? kernel<Real>(target).scatter_measuring : kernel<Real>(target).scatter;
+  }
+  template <class Real>
+  auto gather(Target target) const {
+    return measures ? kernel<Real>(target).gather_measuring : kernel<Real>(target).gather;
+  }
+  template <class Real>
   const StencilKernels<Real>& stencil_kernel(Target target) const {
     return kernels<Real>(target).stencil[stencil];
   }
 };
 
-/// Every stencil with every transfer; every stencil with the first transfer.
+/// Every stencil with every transfer, measuring or not; every stencil with the first transfer.
 std::vector<TransferCase> all_cases();
 std::vector<TransferCase> all_stencils();
 
@@ -51,23 +63,25 @@ std::vector<TransferCase> all_stencils();
 int stencil_width(std::size_t stencil);
 
 /// Whether particles with one base node follow one another.
-enum class Order { kRuns, kScattered };
+enum class Order { kSegments, kScattered };
 
 /// Particles of one block, with one more number behind every channel that nobody may touch.
 template <class Real>
 struct Particles {
   std::size_t count = 0;
   std::vector<Real> position[3], velocity[3], affine[kAffineComponents], strain[kStrainComponents],
-      stress[kStrainComponents];
+      stress[kStrainComponents], own[3];
 
   explicit Particles(std::size_t size);
 
   ParticleSpan<Real> span();
-  ScatterInput<Real> scatter_input(const TransferCase& transfer);
+  /// With `own` for their own velocity; `before` is where what is measured goes.
+  ScatterInput<Real> scatter_input(const TransferCase& transfer, Real* before = nullptr);
   bool canaries_alive() const;
 };
 
-/// Base nodes from the lowest to the highest of the stencil, |v| to 1 m/s, |C| to 1/dx, stresses to 5e4 Pa.
+/// Base nodes from the lowest to the highest of the stencil, |v| and |own| to 1 m/s, |C| to 1/dx, stresses to
+/// 5e4 Pa.
 template <class Real>
 Particles<Real> random_particles(std::size_t count, Order order, std::uint64_t seed, std::size_t stencil = 0);
 
@@ -84,8 +98,13 @@ using Arena = std::vector<Real>;
 template <class Real>
 Arena<Real> random_arena(std::uint64_t seed);
 
+/// Of momentum, and where the case measures of momentum before forces.
 template <class Real>
-Arena<double> reference_scatter(Particles<Real>& particles, const TransferCase& transfer);
+struct ScatteredReference {
+  Arena<double> arena = Arena<double>(kArenaValues, 0.0), before = arena;
+
+  ScatteredReference(Particles<Real>& particles, const TransferCase& transfer);
+};
 
 /// Bits of the rows of nodes that the particles reach, and how many segments they form.
 struct Touched {
@@ -98,10 +117,12 @@ Touched touched_by(const Particles<Real>& particles, std::size_t stencil);
 /// What a gather gave, with one more number behind every channel that nobody may touch.
 template <class Real>
 struct Gathered {
-  std::vector<Real> velocity[3], affine[kAffineComponents], moving[3], gradient[kAffineComponents], before[3];
+  std::vector<Real> velocity[3], affine[kAffineComponents], moving[3], gradient[kAffineComponents], own[3];
+  Arena<Real> before;
 
   explicit Gathered(std::size_t count);
-  /// Everything is wanted that the transfer has. `before` is filled at random where velocity is kept.
+  /// Everything is wanted that the transfer has. Nodes before forces are at random; `own` begins as that of the
+  /// particles.
   GatherInput<Real> input(Particles<Real>& particles, const TransferCase& transfer);
   bool canaries_alive() const;
 };

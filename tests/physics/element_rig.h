@@ -62,6 +62,7 @@ class Element {
                           dt,
                           state_.spacing,
                           state_.counters.time,
+                          state_.counters.step,
                           Vec3(0, 0, 0)};
       for (std::size_t k = 0; k < 9; ++k) chunk.moving_gradient[k] = gradient_[k].data();
       for (const auto& pass : passes_) pass.run(chunk);

@@ -26,8 +26,15 @@ StepLimits limits() {
   return result;
 }
 
+TransferChoice choice(int stencil = 0, int transfer = 0) {
+  TransferChoice made;
+  made.stencil = stencil;
+  made.transfer = transfer;
+  return made;
+}
+
 StepSize choose(const StepLimits& given, const Counters& counters, double remaining = kNoFrame) {
-  return choose_step(given, TransferChoice{}, kSpacing, counters, remaining);
+  return choose_step(given, choice(), kSpacing, counters, remaining);
 }
 
 TEST(TimeStep, MatterAtRest_SoundBinds) {
@@ -78,14 +85,14 @@ TEST(TimeStep, LooseSound_IsolatedFollowsStencilAndTransfer) {
   StepLimits given = limits();
   given.sound = 100.0;
   for (const Row& row : kRows) {
-    const StepSize step = choose_step(given, TransferChoice{row.stencil, row.transfer}, kSpacing, {}, kNoFrame);
+    const StepSize step = choose_step(given, choice(row.stencil, row.transfer), kSpacing, {}, kNoFrame);
     EXPECT_EQ(step.limit, Limit::kIsolated) << row.stencil << ' ' << row.transfer;
     EXPECT_NEAR(step.dt, 0.9 * row.cells * kSpacing / 15.0, 1e-8) << row.stencil << ' ' << row.transfer;
   }
-  TransferChoice stretching{kQuadratic, kRpic};
+  TransferChoice stretching = choice(kQuadratic, kRpic);
   stretching.kept_stretching = 1.0;  // RPIC that tells all is APIC
   EXPECT_NEAR(choose_step(given, stretching, kSpacing, {}, kNoFrame).dt, 0.9 * 0.70711 * kSpacing / 15.0, 1e-8);
-  const StepSize linear = choose_step(given, TransferChoice{2, kMls}, kSpacing, {}, kNoFrame);
+  const StepSize linear = choose_step(given, choice(2, kMls), kSpacing, {}, kNoFrame);
   EXPECT_EQ(linear.limit, Limit::kSound) << "no step is safe with the linear stencil: nothing is promised";
 }
 
@@ -98,7 +105,7 @@ TEST(TimeStep, FastMatterOrFastSolid_VelocityBinds) {
   EXPECT_DOUBLE_EQ(of_matter.dt, 0.6 * kSpacing / 50.0);
   StepPlan<float> plan;
   plan.limits = limits();
-  plan.transfer = TransferChoice{0, 0};
+  plan.transfer = choice(0, 0);
   plan.speeds.push_back([](double from, double to) { return from <= 0.0 && to > 0.0 ? 100.0 : 0.0; });
   EXPECT_DOUBLE_EQ(next_step(plan, kSpacing, fast, kNoFrame).dt, 0.6 * kSpacing / 100.0);
   fast.time = 1.0;

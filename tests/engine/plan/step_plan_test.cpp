@@ -153,7 +153,7 @@ void run_on_one(State<float>& state, Add add) {
   plan.gather.resize(1);
   add(plan.gather_of(state, 0));
   Scratch<float> scratch(plan.scratch);
-  Chunk<float> chunk{set, 0, set.span(0, 1), scratch, 0.5f, 0.1, 2.0, Vec3(0, 0, 0)};
+  Chunk<float> chunk{set, 0, set.span(0, 1), scratch, 0.5f, 0.1, 2.0, 0, Vec3(0, 0, 0)};
   for (const auto& pass : plan.gather[0]) pass.run(chunk);
 }
 
