@@ -1,6 +1,6 @@
 // Repose: sand that is sheared for long drifts apart from what its strains say: the places of particles are
 // rearranged, their volumes are summed from gradients, and neither knows of the other. Sand in a drum loses a
-// third of its area in ten half turns while its particles believe to have gained. This effect measures how much
+// quarter of its room in six half turns while its particles believe to have gained. This effect measures how much
 // mass lies around a particle, and as sand is sheared lets its strain follow where that is more than it should
 // be: pressure then drives particles apart. Stress acts within the sand, so momentum is kept (docs/math.md,
 // section 48).

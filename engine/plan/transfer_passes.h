@@ -49,7 +49,7 @@ template <class Real>
 void add_normalize(StepPlan<Real>& plan);
 
 /// For transfers whose particles keep velocity: room for the nodes' velocity before forces, and p/m there. The
-/// scatter fills it a second time, without stress: stress is a force. For other implicit steps, the same
+/// scatter fills it beside the first, without stress: stress is a force. For other implicit steps, the same
 /// velocity, kept from the nodes before any force acts.
 template <class Real>
 void add_velocity_before_forces(StepPlan<Real>& plan);
