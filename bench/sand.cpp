@@ -73,7 +73,7 @@ void fill_block(Sand<Real>& sand, std::size_t first, std::size_t stencil, Random
 }
 
 template <class Real>
-double count_run(const Sand<Real>& sand, std::size_t stencil) {
+double particles_per_segment_in(const Sand<Real>& sand, std::size_t stencil) {
   std::size_t segments = 0;
   std::array<int, 3> last{-9, -9, -9};
   for (std::size_t p = 0; p < sand.count; ++p) {
@@ -208,15 +208,15 @@ std::uint64_t rows_of_block(std::size_t stencil) {
   return rows;
 }
 
-double particles_per_run(std::size_t stencil) {
+double particles_per_segment(std::size_t stencil) {
   static const auto all = [] {
-    std::array<double, kStencilFigures.size()> runs;
-    for (std::size_t s = 0; s < runs.size(); ++s) {
+    std::array<double, kStencilFigures.size()> lengths;
+    for (std::size_t s = 0; s < lengths.size(); ++s) {
       Sand<double> sand;
       sand.fill(s, kDistinctBlocks);
-      runs[s] = count_run(sand, s);
+      lengths[s] = particles_per_segment_in(sand, s);
     }
-    return runs;
+    return lengths;
   }();
   return all[stencil];
 }

@@ -62,7 +62,6 @@ template <class Real>
 struct Sand {
   AlignedArray<Real> channel[Workpiece<Real>::kChannels];
   std::size_t count = 0;
-  double run = 0;  ///< particles that follow one another with one base node, in the mean
 
   /// As many blocks of 512 particles, ordered for a stencil; after a number of them they repeat.
   void fill(std::size_t stencil, std::size_t blocks);
@@ -85,8 +84,8 @@ class Chunk {
 
 /// Rows of the arena that the particles of a block in order reach.
 std::uint64_t rows_of_block(std::size_t stencil);
-/// Particles a run, in the mean, of a block in order.
-double particles_per_run(std::size_t stencil);
+/// Particles a segment, in the mean, of a block in order.
+double particles_per_segment(std::size_t stencil);
 
 /// The set that no cache holds, filled for a stencil. Only the precision asked for last has memory.
 template <class Real>

@@ -71,18 +71,18 @@ void add_pair(const Kernels<Real>& table, std::size_t stencil, std::size_t trans
               std::vector<KernelCase<Real>>& cases) {
   const std::string pair = std::string("/") + kStencilFigures[stencil].name + "/" +
                            kTransferChoices[transfer].name + (measures ? "/measuring" : "");
-  const double run = particles_per_run(stencil);
+  const double segment = particles_per_segment(stencil);
   const TransferKernels<Real>& kernels = table.transfer[stencil][transfer];
   const auto scatter = measures ? kernels.scatter_measuring : kernels.scatter;
   const auto gather = measures ? kernels.gather_measuring : kernels.gather;
-  cases.push_back({"scatter" + pair, stencil, kChunk, scatter_work(stencil, transfer, run, measures),
+  cases.push_back({"scatter" + pair, stencil, kChunk, scatter_work(stencil, transfer, segment, measures),
                    [=](Workpiece<Real>& piece) {
                      std::uint64_t rows = 0;
                      scatter(scatter_input(piece, stencil), piece.arena, rows);
                    },
                    [=](Workpiece<Real>& piece) { reference_scatter(piece, stencil, transfer, measures); }});
   cases.push_back(
-      {"gather" + pair, stencil, kChunk, gather_work(stencil, transfer, run, measures),
+      {"gather" + pair, stencil, kChunk, gather_work(stencil, transfer, segment, measures),
        [=](Workpiece<Real>& piece) { gather(gather_input(piece, stencil, transfer, measures), piece.arena); },
        [=](Workpiece<Real>& piece) {
          reference::gather(stencil, transfer, gather_input(piece, stencil, transfer, measures), piece.arena);

@@ -2,7 +2,7 @@
 // one; what only compares, selects, rounds, moves or changes a sign counts nothing. Counted is the arithmetic
 // of the formulas in the form in which the kernels compute them (sums factored axis by axis), without what
 // falls on padding: the fourth node of a row where a stencil has fewer. Numbers of an arena are counted once a
-// run.
+// segment.
 #include "bench/work.h"
 
 #include <array>
@@ -16,14 +16,14 @@ namespace repose {
 namespace {
 
 /// What the loops of a transfer depend on.
-struct Shape {
+struct Loops {
   int width, center;
   bool affine, skew, moments, slopes;  ///< moments, slopes: what the gather sums
   bool push, tilt;  ///< of the scatter: forces by gradients; momentum that varies along the stencil
   bool keeps_velocity, separate_gradient;
 
   double row() const { return width * kNodeValues; }
-  /// Rows times values of a row, padding included: what a run reads or writes of the arena.
+  /// Rows times values of a row, padding included: what a segment reads or writes of the arena.
   double reach() const { return width * width * kBlockSide * kNodeValues; }
 };
 
@@ -34,7 +34,7 @@ constexpr auto kCenters = []<class... Stencil>(const std::tuple<Stencil...>&) {
   return std::array{Stencil::kCenter...};
 }(Stencils{});
 
-Shape shape_of(std::size_t stencil, std::size_t transfer) {
+Loops loops_of(std::size_t stencil, std::size_t transfer) {
   const TransferFigures& figures = kTransferFigures[transfer];
   const bool affine = figures.affine != Affine::kNone, constant_d = kStencilFigures[stencil].constant_d;
   // Where D varies, forces by moments are forces by gradients.
@@ -60,20 +60,20 @@ double locate_flops(int width, bool slopes) {
 }
 
 /// sum of w_i r_i over rows r_i.
-double weigh_flops(const Shape& s) {
+double weigh_flops(const Loops& s) {
   return (2 * s.width - 1) * s.row();
 }
 
 /// Sum, first moment and sum by slopes along one axis.
-double axis_flops(const Shape& s) {
+double axis_flops(const Loops& s) {
   const double sum = s.width == 2 ? 3 : s.width == 3 ? 5 : 7;
   const double moment = s.width == 2 ? 0 : s.width == 3 ? 1 : 3;
   return (sum + (s.moments ? moment : 0)) * s.row() + (s.slopes ? weigh_flops(s) : 0);
 }
 
-/// The matrix told, stresses and momentum of a particle, then its rows; per run the rows are added to the
+/// The matrix told, stresses and momentum of a particle, then its rows; per segment the rows are added to the
 /// arena.
-double scatter_flops(const Shape& s, double run) {
+double scatter_flops(const Loops& s, double segment) {
   const double matrix = s.affine ? 9 + (s.skew ? 9 * 6 : 0) : 0;
   const double stress = s.push ? 9 : 9 * 2;
   const double momentum = 3 + (s.tilt ? 9 * 2 : 0);
@@ -83,10 +83,11 @@ double scatter_flops(const Shape& s, double run) {
   double rows = s.tilt ? 5 + (w + steps) + w * steps : 1;  // centre and slopes; columns; nodes
   rows += w + 2 * w * w;                                   // middle w_i; value w_j added
   if (s.push) rows += 4 + 3 * w + 2 * w * w;
-  return locate_flops(s.width, s.push) + matrix + stress + momentum + rows * s.row() + w * w * s.row() / run;
+  return locate_flops(s.width, s.push) + matrix + stress + momentum + rows * s.row() +
+         w * w * s.row() / segment;
 }
 
-double gather_flops(const Shape& s) {
+double gather_flops(const Loops& s) {
   const double w = s.width, along = 3 * s.row();  // three products with weights along z
   double sums = (w + 1) * axis_flops(s) + s.row() + kNodeValues * (w - 1);
   for (const bool matrix : {s.moments, s.slopes}) {
@@ -104,35 +105,35 @@ double polynomial_flops(std::size_t terms) {
 
 }  // namespace
 
-Work scatter_work(std::size_t stencil, std::size_t transfer, double run, bool measures) {
-  const Shape s = shape_of(stencil, transfer);
+Work scatter_work(std::size_t stencil, std::size_t transfer, double segment, bool measures) {
+  const Loops s = loops_of(stencil, transfer);
   Work work;
-  work.read = 3 + 3 + (s.affine ? 9 : 0);  // position, velocity, C
-  work.near_read = 6 + s.reach() / run;    // stress, arena
-  work.near_written = s.reach() / run;     // arena
-  work.flops = scatter_flops(s, run);
+  work.read = 3 + 3 + (s.affine ? 9 : 0);    // position, velocity, C
+  work.near_read = 6 + s.reach() / segment;  // stress, arena
+  work.near_written = s.reach() / segment;   // arena
+  work.flops = scatter_flops(s, segment);
   if (!measures) return work;
-  Shape before = s;
+  Loops before = s;
   before.push = false;
   before.tilt = s.affine;
-  work.near_read += s.reach() / run;
-  work.near_written += s.reach() / run;
-  work.flops += scatter_flops(before, run) - locate_flops(s.width, false);
+  work.near_read += s.reach() / segment;
+  work.near_written += s.reach() / segment;
+  work.flops += scatter_flops(before, segment) - locate_flops(s.width, false);
   return work;
 }
 
-Work gather_work(std::size_t stencil, std::size_t transfer, double run, bool measures) {
-  const Shape s = shape_of(stencil, transfer);
+Work gather_work(std::size_t stencil, std::size_t transfer, double segment, bool measures) {
+  const Loops s = loops_of(stencil, transfer);
   const double own = s.keeps_velocity ? 3 : 0;
   Work work;
   work.read = 3 + own;                                      // position; own velocity, or velocity
   work.written = 3 + (s.affine ? 9 : 0) + own;              // velocity, C, own velocity
   work.fetched = 3 + (s.affine ? 9 : 0);                    // velocity, C
-  work.near_read = s.reach() / run;                         // arena
+  work.near_read = s.reach() / segment;                     // arena
   work.near_written = own + (s.separate_gradient ? 9 : 0);  // moving velocity, gradient
   work.flops = gather_flops(s);
   if (!measures) return work;
-  work.near_read += s.reach() / run;
+  work.near_read += s.reach() / segment;
   work.flops += (s.width + 1) * weigh_flops(s) + s.row() + kNodeValues * (s.width - 1);
   return work;
 }

@@ -21,10 +21,10 @@ struct Work {
   double far_numbers() const { return read + written + fetched; }
 };
 
-/// The transfers, by their places in the lists of the kernels. `run` is how many particles follow one another
-/// with one base node: so many share a look at the arena.
-Work scatter_work(std::size_t stencil, std::size_t transfer, double run, bool measures);
-Work gather_work(std::size_t stencil, std::size_t transfer, double run, bool measures);
+/// The transfers, by their places in the lists of the kernels. `segment` is how many particles follow one
+/// another with one base node: so many share a look at the arena.
+Work scatter_work(std::size_t stencil, std::size_t transfer, double segment, bool measures);
+Work gather_work(std::size_t stencil, std::size_t transfer, double segment, bool measures);
 
 /// For strains small enough for the polynomials, as those of sand are.
 template <class Real>

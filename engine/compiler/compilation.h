@@ -15,10 +15,7 @@ namespace repose {
 
 inline TransferChoice transfer_choice(const Scene& scene) {
   const GridDescription& grid = scene.grid;
-  TransferChoice choice{grid.stencil, grid.transfer, grid.velocity_loss, grid.kept_velocity,
-                        grid.kept_stretching};
-  if (grid.kept_velocity) choice.steps_between_measures = 1;  // a share per step is of that step
-  return choice;
+  return {grid.stencil, grid.transfer, grid.velocity_loss, grid.kept_velocity, grid.kept_stretching};
 }
 
 inline int material_index(const Scene& scene, const std::string& name) {

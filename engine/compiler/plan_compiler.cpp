@@ -47,7 +47,8 @@ StepPlan<Real> empty_plan(const Compilation<Real>& compilation, const State<Real
   plan.target = compilation.options.target;
   plan.kernels = &kernels<Real>(plan.target);
   plan.transfer = transfer_choice(scene);
-  if (implicit) plan.transfer.steps_between_measures = 1;  // long steps, and few
+  // Implicit steps are long, and a share that is kept per step is of that step.
+  if (!implicit && !plan.transfer.kept_velocity) plan.transfer.steps_between_measures = kStepsBetweenMeasures;
   plan.limits = step_limits(scene);
   plan.advection = scene.grid.advection;
   if (plan.advection == Advection::kAfterFriction) plan.scratch.share_arena(kArenaAfterFriction, kArena);

@@ -20,8 +20,8 @@ enum class Advection {
   kBeforeFriction,  ///< v-bar
 };
 
-/// Explicit steps after which the velocity that particles have for themselves is measured anew (docs/math.md,
-/// section 47). It changes as particles pass by each other, by less than a cell in as many steps.
+/// Explicit steps after which the velocity that particles have for themselves is measured anew, where its loss is
+/// a rate. Chosen for what it costs and what it loses, from the table of docs/math.md, section 47.
 inline constexpr std::int64_t kStepsBetweenMeasures = 4;
 
 /// The stencil and the transfer of a scene.
@@ -30,7 +30,7 @@ struct TransferChoice {
   double velocity_loss = 0.0;             ///< 1/s, of what particles have for themselves (flip, aflip)
   std::optional<double> kept_velocity{};  ///< a share per step, in [0, 1], in its place
   double kept_stretching = 0.0;           ///< share of stretching that RPIC tells, in [0, 1]
-  std::int64_t steps_between_measures = kStepsBetweenMeasures;
+  std::int64_t steps_between_measures = 1;  ///< of what particles have for themselves
 
   const StencilFigures& nodes() const { return kStencilFigures[static_cast<std::size_t>(stencil)]; }
   const TransferFigures& figures() const { return kTransferFigures[static_cast<std::size_t>(transfer)]; }

@@ -165,13 +165,13 @@ void add_gather(const StepPlan<Real>& plan, const Lattice<Real>& lattice, Gather
   const auto before = when(keeps_velocity, kVelocityBeforeForces);
   const auto tilde = when(wishes.friction, kVTilde);
   const auto mass = when(wishes.mass_around, kMassAround);
+  const auto own_x = when(keeps_velocity, kOwnVelocityX);
+  const auto own_y = when(keeps_velocity, kOwnVelocityY);
+  const auto own_z = when(keeps_velocity, kOwnVelocityZ);
   const auto affine = when(choice.keeps_affine(), kAffine);
-  passes.add({"gather"},
-             reads(kPosition, velocity, kNodeVelocity, tilde, before, when(keeps_velocity, kOwnVelocityX),
-                   when(keeps_velocity, kOwnVelocityY), when(keeps_velocity, kOwnVelocityZ)),
-             writes(kParticleVelocity, affine, kMovingVelocity, kGradient, kVelocityRoom, kGradientRoom,
-                    when(keeps_velocity, kOwnVelocityX), when(keeps_velocity, kOwnVelocityY),
-                    when(keeps_velocity, kOwnVelocityZ), mass),
+  passes.add({"gather"}, reads(kPosition, velocity, kNodeVelocity, tilde, before, own_x, own_y, own_z),
+             writes(kParticleVelocity, affine, kMovingVelocity, kGradient, kVelocityRoom, kGradientRoom, own_x,
+                    own_y, own_z, mass),
              gather);
 }
 
