@@ -3,30 +3,20 @@
 // floating-point environment: a host that flushes denormals would otherwise change our bits.
 #pragma once
 
+#ifdef REPOSE_STD_THREADS
+#include "engine/base/std_threads.h"
+#else
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
-#include <cfenv>
 #include <cstddef>
 
+#include "engine/base/clean_floating_point.h"
+
 namespace repose {
-
-/// Sets the default floating-point environment and puts the caller's back.
-class CleanFloatingPoint {
- public:
-  CleanFloatingPoint() {
-    std::fegetenv(&saved_);
-    std::fesetenv(FE_DFL_ENV);
-  }
-  ~CleanFloatingPoint() { std::fesetenv(&saved_); }
-  CleanFloatingPoint(const CleanFloatingPoint&) = delete;
-  CleanFloatingPoint& operator=(const CleanFloatingPoint&) = delete;
-
- private:
-  std::fenv_t saved_;
-};
 
 class Threads {
  public:
@@ -61,3 +51,5 @@ class Threads {
 };
 
 }  // namespace repose
+
+#endif

@@ -3,23 +3,17 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/mix.h"
 #include "engine/effect/effect.h"
 
 namespace repose {
 namespace {
 
-/// Finalizer of splitmix64 (Steele et al. 2014).
-std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-  return x ^ (x >> 31);
-}
-
 /// In [-1, 1).
 double value_at(std::int64_t i, std::int64_t j, std::int64_t k, std::uint64_t seed) {
-  std::uint64_t hash = mix(seed + 0x9e3779b97f4a7c15ull);
+  std::uint64_t hash = mix_bits(seed + 0x9e3779b97f4a7c15ull);
   for (const std::int64_t c : {i, j, k})
-    hash = mix(hash + static_cast<std::uint64_t>(c) * 0xd1b54a32d192ed03ull);
+    hash = mix_bits(hash + static_cast<std::uint64_t>(c) * 0xd1b54a32d192ed03ull);
   return static_cast<double>(hash >> 11) * 0x1p-52 - 1.0;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "engine/base/mix.h"
 #include "engine/geometry/seeding.h"
 
 namespace repose {
@@ -22,10 +23,7 @@ inline std::array<float, 3> to_float(const std::array<double, 3>& offset) {
 
 /// One step of SplitMix64 (Steele, Lea and Flood 2014): a bijection that leaves no pattern of its argument.
 inline std::uint64_t mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
+  return mix_bits(x + 0x9e3779b97f4a7c15u);
 }
 
 /// Cells from `lower` up to, not with, `upper`, and where they lie in space.

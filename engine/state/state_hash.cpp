@@ -2,18 +2,13 @@
 
 #include <bit>
 
+#include "engine/base/mix.h"
+
 namespace repose {
 namespace {
 
-/// Finalizer of splitmix64 (Steele et al. 2014).
-std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-  return x ^ (x >> 31);
-}
-
 void absorb(std::uint64_t& hash, std::uint64_t value) {
-  hash = mix(hash + 0x9e3779b97f4a7c15ull + value);
+  hash = mix_bits(hash + 0x9e3779b97f4a7c15ull + value);
 }
 
 template <class Real>
@@ -27,7 +22,7 @@ std::uint64_t bits(Real value) {
 template <class Real>
 std::uint64_t state_hash(const State<Real>& state) {
   // A sum over particles of a hash of each: ids are part of it, so the order of storage is not.
-  std::uint64_t sum = mix(static_cast<std::uint64_t>(state.counters.step));
+  std::uint64_t sum = mix_bits(static_cast<std::uint64_t>(state.counters.step));
   const auto occupied_blocks = state.grid.occupied_blocks();
   for (const auto& set : state.sets) {
     for (std::size_t occupied = 0; occupied < occupied_blocks.size(); ++occupied) {
@@ -39,7 +34,7 @@ std::uint64_t state_hash(const State<Real>& state) {
           absorb(hash, static_cast<std::uint64_t>(cell));
         }
         set.for_each_real([&](const AlignedArray<Real>& channel) { absorb(hash, bits(channel[p])); });
-        sum += mix(hash);
+        sum += mix_bits(hash);
       }
     }
   }

@@ -3,4 +3,8 @@
 // they would lengthen the build for machines that render farms no longer have.
 #pragma once
 
+#ifdef REPOSE_FEWER_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#else
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
+#endif

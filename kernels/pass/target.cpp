@@ -1,9 +1,21 @@
 // Repose: which instruction sets this machine has.
 #include "kernels/pass/target.h"
 
+#include "kernels/base/targets.h"
+
 #include "hwy/targets.h"
 
+#include <cstdint>
+
 namespace repose {
+namespace {
+
+/// The machine, and this build.
+bool supports(std::int64_t target) {
+  return (hwy::SupportedTargets() & HWY_TARGETS & target) != 0;
+}
+
+}  // namespace
 
 const char* target_name(Target target) {
   constexpr const char* kNames[kTargets] = {"baseline", "avx2", "avx512"};
@@ -15,9 +27,9 @@ bool target_supported(Target target) {
     case Target::kBaseline:
       return true;
     case Target::kAvx2:
-      return (hwy::SupportedTargets() & HWY_AVX2) != 0;
+      return supports(HWY_AVX2);
     case Target::kAvx512:
-      return (hwy::SupportedTargets() & HWY_AVX3) != 0;
+      return supports(HWY_AVX3);
   }
   return false;
 }
