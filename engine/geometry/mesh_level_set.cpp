@@ -97,6 +97,31 @@ Result<MeshLevelSet> MeshLevelSet::make(const TriangleMesh& mesh, double voxel, 
   return MeshLevelSet(std::move(grid));
 }
 
+double MeshLevelSet::volume() const {
+  constexpr int kSamples = 4;
+  constexpr double kSure = 0.87;  // voxels from the surface: half the diagonal of one
+  const auto accessor = grid_->distance->getConstUnsafeAccessor();
+  const auto share = [&](const openvdb::Coord& at) {
+    int inside = 0;
+    for (int s = 0; s < kSamples * kSamples * kSamples; ++s) {
+      const openvdb::Vec3R offset(s / 16, s / 4 % 4, s % 4);
+      const openvdb::Vec3R place = at.asVec3d() + (offset + 0.5) / kSamples - 0.5;
+      inside += openvdb::tools::BoxSampler::sample(accessor, place) < 0.0f ? 1 : 0;
+    }
+    return static_cast<double>(inside) / (kSamples * kSamples * kSamples);
+  };
+  double voxels = 0.0;
+  for (auto value = grid_->distance->cbeginValueAll(); value; ++value) {
+    const double distance = static_cast<double>(*value) / grid_->voxel;
+    if (value.isVoxelValue() && std::abs(distance) < kSure) {
+      voxels += share(value.getCoord());
+    } else if (distance < 0.0) {
+      voxels += static_cast<double>(value.getVoxelCount());
+    }
+  }
+  return voxels * std::pow(grid_->voxel, 3);
+}
+
 double MeshLevelSet::sample(const Vec3& x) const {
   const Vec3 at = (x - grid_->center) / grid_->voxel;
   // Unsafe means unregistered with the tree: right for a tree that never changes, and free of its lock.

@@ -2,6 +2,7 @@
 // A face may come before its vertices, so indices are checked when the whole file is known.
 #include "engine/geometry/mesh_reader.h"
 #include "engine/geometry/mesh_text.h"
+#include "engine/geometry/polygon.h"
 
 namespace repose {
 namespace {
@@ -28,16 +29,32 @@ bool read_face(std::string_view line, std::size_t vertices, std::vector<std::int
   return corners.size() >= 3;
 }
 
+/// The next line, with those that it goes on in: a "\\" at its end says so. `joined` holds it then; `lines`
+/// counts.
+std::string_view take_statement(std::string_view& bytes, std::string& joined, std::int64_t& lines) {
+  std::string_view line = take_line(bytes);
+  ++lines;
+  if (!line.ends_with('\\')) return line;
+  joined.clear();
+  for (; line.ends_with('\\'); ++lines) {
+    joined.append(line.substr(0, line.size() - 1)).push_back(' ');
+    line = take_line(bytes);
+  }
+  return joined.append(line);
+}
+
 }  // namespace
 
 Result<TriangleMesh> read_obj(std::string_view bytes, const std::string& name) {
   TriangleMesh mesh;
   std::vector<Face> faces;
-  std::int64_t number = 0;
+  std::int64_t number = 0, lines = 0;
+  std::string joined;
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // a byte-order mark
   while (!bytes.empty()) {
-    std::string_view line = take_line(bytes);
+    number = lines + 1;
+    std::string_view line = take_statement(bytes, joined, lines);
     line = line.substr(0, line.find('#'));
-    ++number;
     const std::string_view word = take_word(line);
     if (word == "v") {
       Vec3 vertex;
@@ -53,10 +70,15 @@ Result<TriangleMesh> read_obj(std::string_view bytes, const std::string& name) {
   }
   if (mesh.vertices.size() > kMostVertices) return mesh_error(name, 0, "more than 2^31 vertices");
   for (const Face& face : faces) {
-    if (!append_polygon(face.corners, mesh.vertices.size(), mesh)) {
-      return mesh_error(name, face.line,
-                        "the face names a vertex that the file does not have; it has " +
-                            std::to_string(mesh.vertices.size()));
+    switch (append_polygon(face.corners, mesh)) {
+      case PolygonEnd::kAdded:
+        break;
+      case PolygonEnd::kNoVertex:
+        return mesh_error(name, face.line,
+                          "the face names a vertex that the file does not have; it has " +
+                              std::to_string(mesh.vertices.size()));
+      case PolygonEnd::kNotSimple:
+        return mesh_error(name, face.line, "the outline of the face crosses itself; cut it into triangles");
     }
   }
   return mesh;

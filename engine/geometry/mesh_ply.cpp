@@ -7,6 +7,7 @@
 
 #include "engine/geometry/mesh_reader.h"
 #include "engine/geometry/mesh_text.h"
+#include "engine/geometry/polygon.h"
 
 namespace repose {
 namespace {
@@ -213,11 +214,15 @@ Result<void> read_faces(Values& values, const Element& element, const std::strin
       if (!read_property(values, property, row)) return bad("is cut short or not a number");
       if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
       if (row.size() < 3) return bad("must have three or more vertices");
-      if (!std::all_of(row.begin(), row.end(), is_index) ||
-          !append_polygon({row.begin(), row.end()}, mesh.vertices.size(), mesh)) {
+      const PolygonEnd end = std::all_of(row.begin(), row.end(), is_index)
+                                 ? append_polygon({row.begin(), row.end()}, mesh)
+                                 : PolygonEnd::kNoVertex;
+      if (end == PolygonEnd::kNoVertex) {
         return bad("names a vertex that does not stand before it; there are " +
                    std::to_string(mesh.vertices.size()) + ", counted from 0");
       }
+      if (end == PolygonEnd::kNotSimple)
+        return bad("has an outline that crosses itself; cut it into triangles");
     }
   }
   return {};

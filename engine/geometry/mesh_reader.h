@@ -10,9 +10,9 @@
 
 namespace repose {
 
-/// Reads the mesh at `path` by its ending, .obj or .ply (ASCII or binary little-endian). Polygons become fans
-/// of triangles; positions are in the units of the file. Refuses (65) other endings, bad syntax, indices out of
-/// range and coordinates that are not finite; (66) a file that is missing or cannot be read.
+/// Reads the mesh at `path` by its ending, .obj or .ply (ASCII or binary little-endian). Polygons become
+/// triangles, concave ones too; positions are in the units of the file. Refuses (65) other endings, bad syntax,
+/// indices out of range and coordinates that are not finite; (66) a file that is missing or cannot be read.
 Result<TriangleMesh> read_mesh(const std::string& path);
 
 /// The same from the bytes of a file; `name` stands for it in errors.

@@ -29,7 +29,7 @@ MeshShape::MeshShape(TriangleMesh mesh, MeshLevelSet level_set)
     : mesh_(std::move(mesh)),
       level_set_(std::move(level_set)),
       bounds_(bounds_of(mesh_)),
-      volume_(enclosed_volume(mesh_)) {}
+      volume_(may_overlap_itself(mesh_) ? level_set_.volume() : enclosed_volume(mesh_)) {}
 
 double MeshShape::signed_distance(const Vec3& x) const {
   const Vec3 beyond = (bounds_.lower - x).cwiseMax(x - bounds_.upper).cwiseMax(0.0);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace repose {
@@ -144,6 +145,30 @@ Bounds bounds_of(const TriangleMesh& mesh) {
     }
   }
   return bounds;
+}
+
+/// In the order of their lower ends along x, so that most pairs are never looked at.
+bool may_overlap_itself(const TriangleMesh& mesh) {
+  const std::vector<std::int32_t> piece = pieces(mesh);
+  std::map<std::int32_t, Bounds> found;
+  for (const Index3& t : mesh.triangles) {
+    Bounds& bounds = found[piece[t[0]]];
+    for (const std::int32_t i : t) {
+      bounds.lower = bounds.lower.cwiseMin(mesh.vertices[i]);
+      bounds.upper = bounds.upper.cwiseMax(mesh.vertices[i]);
+    }
+  }
+  std::vector<Bounds> all;
+  for (const auto& [name, bounds] : found) all.push_back(bounds);
+  std::sort(all.begin(), all.end(), [](const Bounds& a, const Bounds& b) { return a.lower[0] < b.lower[0]; });
+  for (std::size_t a = 0; a < all.size(); ++a) {
+    for (std::size_t b = a + 1; b < all.size() && all[b].lower[0] < all[a].upper[0]; ++b) {
+      const auto meet =
+          (all[a].lower.array() < all[b].upper.array()) && (all[b].lower.array() < all[a].upper.array());
+      if (meet.all()) return true;
+    }
+  }
+  return false;
 }
 
 double enclosed_volume(const TriangleMesh& mesh) {

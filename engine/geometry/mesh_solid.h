@@ -11,6 +11,9 @@ namespace repose {
 /// Volume by the divergence theorem (m^3); positive where triangles are counter-clockwise from outside.
 double enclosed_volume(const TriangleMesh& mesh);
 
+/// Whether the bounds of two of its pieces meet: then some of its volume may be enclosed twice.
+bool may_overlap_itself(const TriangleMesh& mesh);
+
 /// Bounds of the vertices.
 Bounds bounds_of(const TriangleMesh& mesh);
 

@@ -18,12 +18,12 @@ namespace repose {
 /// Vertices and triangles are counted in int32.
 constexpr std::size_t kMostVertices = std::numeric_limits<std::int32_t>::max();
 
-/// Takes the next line off `rest`, without its end ("\n" or "\r\n").
+/// Takes the next line off `rest`, without its end ("\n", "\r\n" or, of old, "\r").
 inline std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end);
+  rest.remove_prefix(rest.starts_with("\r\n") ? 2 : rest.empty() ? 0 : 1);
   return line;
 }
 
@@ -47,16 +47,6 @@ bool parse(std::string_view word, Number& value) {
 
 inline Error mesh_error(const std::string& name, std::int64_t line, const std::string& message) {
   return {ErrorKind::kBadScene, message, line > 0 ? name + ":" + std::to_string(line) : name};
-}
-
-/// Adds a polygon as a fan about its first corner; false where an index (from 0) names no vertex.
-inline bool append_polygon(const std::vector<std::int64_t>& corners, std::size_t vertices, TriangleMesh& mesh) {
-  for (const std::int64_t corner : corners) {
-    if (corner < 0 || corner >= static_cast<std::int64_t>(vertices)) return false;
-  }
-  const auto index = [&](std::size_t k) { return static_cast<std::int32_t>(corners[k]); };
-  for (std::size_t k = 2; k < corners.size(); ++k) mesh.triangles.push_back({index(0), index(k - 1), index(k)});
-  return true;
 }
 
 }  // namespace repose

@@ -123,13 +123,17 @@ Result<double> filled_volume(const Shape& shape, const SeedOptions& options) {
   return *area * options.spacing;
 }
 
+double particles_in(double volume, const SeedOptions& options) {
+  const double cell = options.spacing * options.spacing * options.spacing;
+  return volume / cell * static_cast<double>(options.particles_per_cell);
+}
+
 Result<Seeds> seed_checked(const Shape& shape, const SeedOptions& options) {
   const auto box = cells_around(shape, options);
   if (!box) return box.error();
   const auto volume = filled_volume(shape, options);
   if (!volume) return volume.error();
-  const double cell = options.spacing * options.spacing * options.spacing;
-  const double expected = *volume / cell * static_cast<double>(options.particles_per_cell);
+  const double expected = particles_in(*volume, options);
   if (!(expected < kMostParticles)) {
     return refuse("the shape would hold " + std::to_string(expected) + " particles; at most 2^32 - 1 have ids");
   }
@@ -145,6 +149,13 @@ Result<Seeds> seed_checked(const Shape& shape, const SeedOptions& options) {
 }
 
 }  // namespace
+
+Result<double> expected_particles(const Shape& shape, const SeedOptions& options) {
+  if (auto checked = check(options); !checked) return checked.error();
+  const auto volume = filled_volume(shape, options);
+  if (!volume) return volume.error();
+  return particles_in(*volume, options);
+}
 
 Result<Seeds> seed_shape(const Shape& shape, const SeedOptions& options) {
   if (auto checked = check(options); !checked) return checked.error();

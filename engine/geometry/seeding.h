@@ -34,6 +34,10 @@ struct Seeds {
   double particle_volume = 0.0;  ///< V0 = V/N in m^3, so that the sum is the shape's volume exactly
 };
 
+/// Particles that fill `shape`, by its volume or, in plane strain, its section: what seeding makes but for
+/// chance at the surface. Infinite where the shape is; errors as those of seed_shape.
+Result<double> expected_particles(const Shape& shape, const SeedOptions& options);
+
 /// Fills `shape`. Refuses (65) an infinite shape, one that holds no particle, counts beyond uint32, and in
 /// plane strain a shape that cannot give its section; (78) what does not fit in memory.
 Result<Seeds> seed_shape(const Shape& shape, const SeedOptions& options);

@@ -71,26 +71,36 @@ Built make_revolution(const ShapeDescription& d, const Placement& placement) {
   return solid<RevolutionShape>(std::move(*outline), placement.point(d.center), placement.direction(d.axis));
 }
 
+Built mesh_from(const std::string& path, double scale, double spacing) {
+  auto mesh = read_mesh(path);
+  if (!mesh) return mesh.error();
+  for (Vec3& vertex : mesh->vertices) vertex *= scale;
+  auto closed = make_solid(std::move(*mesh), path);
+  if (!closed) return closed.error();
+  auto shape = MeshShape::make(std::move(*closed), spacing);
+  if (!shape) return Error{shape.error().kind, shape.error().message, path};
+  return shape;
+}
+
 Built make_mesh(const ShapeDescription& d, const Placement& placement, const std::string& folder,
-                double spacing, bool allow_outside_paths) {
+                double spacing, bool allow_outside_paths, KnownMeshes& known) {
   if (d.file.empty()) return refuse("mesh: \"file\" must name an .obj or .ply file");
   if (!is_size(d.scale)) return refuse("mesh: \"scale\" must be greater than 0");
   if (!is_size(spacing)) return refuse("mesh: the grid's spacing must be greater than 0");
   const auto path = resolve_path(folder, d.file, "mesh file", allow_outside_paths);
   if (!path) return path.error();
-  auto mesh = read_mesh(*path);
-  if (!mesh) return mesh.error();
-  for (Vec3& vertex : mesh->vertices) vertex *= d.scale;
-  auto closed = make_solid(std::move(*mesh), *path);
-  if (!closed) return closed.error();
-  auto shape = MeshShape::make(std::move(*closed), spacing);
-  if (!shape) return Error{shape.error().kind, shape.error().message, *path};
-  if (d.rotation_angle == 0 && d.translation.isZero(0)) return shape;
-  return solid<PlacedShape>(*shape, placement);
+  std::shared_ptr<const Shape>& kept = known[{*path, d.scale, spacing}];
+  if (kept == nullptr) {
+    auto shape = mesh_from(*path, d.scale, spacing);
+    if (!shape) return shape;
+    kept = *shape;
+  }
+  if (d.rotation_angle == 0 && d.translation.isZero(0)) return kept;
+  return solid<PlacedShape>(kept, placement);
 }
 
 Built make_any(const ShapeDescription& d, const Placement& placement, const std::string& folder, double spacing,
-               bool allow_outside_paths) {
+               bool allow_outside_paths, KnownMeshes& known) {
   switch (d.type) {
     case ShapeDescription::Type::kPlane:
       return make_plane(d, placement);
@@ -103,7 +113,7 @@ Built make_any(const ShapeDescription& d, const Placement& placement, const std:
     case ShapeDescription::Type::kRevolution:
       return make_revolution(d, placement);
     case ShapeDescription::Type::kMesh:
-      return make_mesh(d, placement, folder, spacing, allow_outside_paths);
+      return make_mesh(d, placement, folder, spacing, allow_outside_paths, known);
   }
   return refuse("unknown type of shape");
 }
@@ -121,14 +131,16 @@ Vec3 Shape::normal(const Vec3& x, double h) const {
 }
 
 Built make_shape(const ShapeDescription& description, const std::string& folder, double spacing,
-                 bool allow_outside_paths) {
+                 bool allow_outside_paths, KnownMeshes* known) {
   if (!has_direction(description.rotation_axis)) return refuse("\"rotation_axis\" must not be zero");
   if (!std::isfinite(description.rotation_angle)) return refuse("\"rotation_angle\" must be finite");
   if (!description.translation.allFinite()) return refuse("\"translation\" must be finite");
   const Placement placement{rotation_matrix(description.rotation_axis, description.rotation_angle),
                             description.translation};
   try {
-    return make_any(description, placement, folder, spacing, allow_outside_paths);
+    KnownMeshes none;
+    return make_any(description, placement, folder, spacing, allow_outside_paths,
+                    known == nullptr ? none : *known);
   } catch (const std::bad_alloc&) {
     return Error{ErrorKind::kMemory, "not enough memory for the shape", description.file};
   }

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "engine/base/params.h"
@@ -75,7 +77,8 @@ class Shape {
 
   virtual Bounds bounds() const = 0;
 
-  /// Exact enclosed volume (m^3); infinite for a plane. For a mesh: by the divergence theorem.
+  /// Exact enclosed volume (m^3); infinite for a plane. For a mesh: by the divergence theorem, or, where pieces
+  /// of it may overlap, by its level set.
   virtual double volume() const = 0;
 
   /// Exact area (m^2) of the section by the plane where coordinate `axis` is 0, for plane strain;
@@ -86,9 +89,14 @@ class Shape {
   virtual TriangleMesh surface(double extent) const = 0;
 };
 
+/// Meshes that have become level sets, by file, scale and spacing: however many shapes are of one file, it is
+/// read and held once.
+using KnownMeshes = std::map<std::tuple<std::string, double, double>, std::shared_ptr<const Shape>>;
+
 /// Builds a shape. `folder` is where relative mesh paths start; `spacing` (m) is the resolution at which a
 /// mesh becomes a level set. Refuses (65, 66) degenerate sizes, open meshes, paths that leave the folder.
 Result<std::shared_ptr<const Shape>> make_shape(const ShapeDescription& description, const std::string& folder,
-                                                double spacing, bool allow_outside_paths = false);
+                                                double spacing, bool allow_outside_paths = false,
+                                                KnownMeshes* known = nullptr);
 
 }  // namespace repose

@@ -112,16 +112,28 @@ class FloatValues : public ScalarGrid {
 class VectorValues : public VectorGrid {
  public:
   explicit VectorValues(vdb::Vec3SGrid::Ptr grid)
-      : grid_(std::move(grid)), staggered_(grid_->getGridClass() == vdb::GRID_STAGGERED) {}
+      : grid_(std::move(grid)), staggered_(grid_->getGridClass() == vdb::GRID_STAGGERED) {
+    vdb::Vec3d most(0.0);
+    const auto note = [&most](const vdb::Vec3s& value) {
+      for (int axis = 0; axis < 3; ++axis) most[axis] = std::max(most[axis], std::abs(double(value[axis])));
+    };
+    note(grid_->background());
+    for (auto value = grid_->cbeginValueOn(); value; ++value) note(*value);
+    largest_ = most.length();
+  }
   Vec3 at(const Vec3& x) const override {
     const vdb::Vec3s value = staggered_ ? sample<vdb::tools::StaggeredBoxSampler>(*grid_, x)
                                         : sample<vdb::tools::BoxSampler>(*grid_, x);
     return {double(value[0]), double(value[1]), double(value[2])};
   }
 
+  /// By its components, for those of a staggered grid lie in several places.
+  double largest() const override { return largest_; }
+
  private:
   vdb::Vec3SGrid::Ptr grid_;
   bool staggered_;
+  double largest_ = 0.0;
 };
 
 }  // namespace

@@ -46,6 +46,8 @@ class VectorGrid {
   virtual ~VectorGrid() = default;
 
   virtual Vec3 at(const Vec3& x) const = 0;
+  /// No value is larger, with the background.
+  virtual double largest() const = 0;
 };
 
 }  // namespace repose

@@ -2,10 +2,12 @@
 // and where a scene may read from. The bunny and the bowl are those that the scenes use.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 
 #include "engine/geometry/mesh_reader.h"
+#include "engine/geometry/mesh_shape.h"
 #include "engine/geometry/mesh_solid.h"
 #include "tests/engine/geometry/geometry_rig.h"
 #include "tests/engine/geometry/mesh_files.h"
@@ -174,6 +176,99 @@ TEST(Mesh, BadObj_IsRefusedAtItsLine) {
   EXPECT_TRUE(has(text(replaced(kBoxObj, "v 1 0 0", "v 1e999 0 0")), "box.obj:3: "));
   EXPECT_TRUE(has(text(replaced(kBoxObj, "v 1 0 0", "v 1 0")), "box.obj:3: "));
   EXPECT_TRUE(has(text(replaced(kBoxObj, "v 1 0 0", "v 1 0 x")), "box.obj:3: "));
+}
+
+/// A channel with a U for a section, 0.3 x 0.3 with a notch 0.1 wide down to 0.1, 2 long; its two ends are one
+/// polygon of eight corners each.
+std::string channel_obj() {
+  const double u[8][2] = {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+  std::string text;
+  for (const int z : {0, 2}) {
+    for (const auto& at : u)
+      text += "v " + std::to_string(at[0]) + " " + std::to_string(at[1]) + " " + std::to_string(z) + "\n";
+  }
+  text += "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\n";
+  for (int k = 0; k < 8; ++k) {
+    const int a = k + 1, b = (k + 1) % 8 + 1;
+    text += "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(b + 8) + " " +
+            std::to_string(a + 8) + "\n";
+  }
+  return text;
+}
+
+TEST(Mesh, ConcavePolygons_LeaveTheNotchOpen) {
+  for (const bool turned_over : {false, true}) {
+    std::string text = channel_obj();
+    if (turned_over)
+      text = replaced(replaced(text, "f 8 7 6 5 4 3 2 1", "f 3 2 1 8 7 6 5 4"), "f 9 10 11 12 13 14 15 16",
+                      "f 13 14 15 16 9 10 11 12");
+    auto mesh = read_obj(text, "channel.obj");
+    ASSERT_TRUE(mesh) << mesh.error().text();
+    const auto closed = make_solid(std::move(*mesh), "channel.obj");
+    ASSERT_TRUE(closed) << closed.error().text();
+    EXPECT_NEAR(enclosed_volume(*closed), 2.0 * (9.0 - 2.0), 1e-12);
+    const auto shape = MeshShape::make(*closed, 0.2);
+    ASSERT_TRUE(shape);
+    EXPECT_GT((*shape)->signed_distance({1.5, 2.0, 0.0}), 0.2) << "the mouth of the notch is no lid";
+    EXPECT_GT((*shape)->signed_distance({1.5, 2.0, 1.0}), 0.3);
+    EXPECT_LT((*shape)->signed_distance({0.5, 2.0, 1.0}), -0.3);
+  }
+}
+
+TEST(Mesh, PolygonThatCrossesItself_IsRefusedAtItsLine) {
+  const auto text = refusal(read_obj("v 0 0 0\nv 3 0 0\nv 0 2 0\nv 3 1 0\nf 1 2 3 4\n", "bow.obj"));
+  EXPECT_TRUE(has(text, "bow.obj:5: ")) << text;
+  EXPECT_TRUE(has(text, "crosses itself")) << text;
+  const auto uneven =
+      refusal(read_obj("v 0 0 0\nv 4 0 0\nv 0 2 0\nv 1 1 0\nv 2 3 0\nf 1 2 3 4 5\n", "bow.obj"));
+  EXPECT_TRUE(has(uneven, "bow.obj:6: ")) << uneven;
+}
+
+TEST(Mesh, ObjAsOtherProgramsWriteIt_IsTheSame) {
+  const auto volume = [](const std::string& text) {
+    auto mesh = read_obj(text, "box.obj");
+    if (!mesh) return -1.0;
+    const auto closed = make_solid(std::move(*mesh), "box.obj");
+    return closed ? enclosed_volume(*closed) : -2.0;
+  };
+  const double right = volume(kBoxObj);
+  EXPECT_GT(right, 0.0);
+  EXPECT_EQ(volume("\xEF\xBB\xBF" + std::string(kBoxObj)), right) << "a byte-order mark";
+  EXPECT_EQ(volume(replaced(kBoxObj, "f 1 4 3 2", "f 1 4 \\\n 3 2")), right) << "a line that goes on";
+  std::string old_ends = kBoxObj;
+  std::replace(old_ends.begin(), old_ends.end(), '\n', '\r');
+  EXPECT_EQ(volume(old_ends), right);
+  const auto wrong = refusal(read_obj(replaced(kBoxObj, "f 1 4 3 2", "f 1 4 \\\n 3 9"), "box.obj"));
+  EXPECT_TRUE(has(wrong, "box.obj:10: ")) << wrong;
+}
+
+TEST(Mesh, PiecesThatOverlap_HaveTheVolumeOfTheirUnion) {
+  const auto volume = [](const TriangleMesh& mesh) {
+    const auto closed = make_solid(mesh, "pieces");
+    EXPECT_TRUE(closed);
+    const auto shape = MeshShape::make(*closed, 0.1);
+    EXPECT_TRUE(shape);
+    return (*shape)->volume();
+  };
+  const double one = volume(box_mesh());
+  EXPECT_NEAR(volume(joined(box_mesh(), box_mesh(), 1.0, {10, 0, 0})), 2.0 * one, 1e-9);
+  EXPECT_NEAR(volume(joined(box_mesh(), box_mesh(), 0.5, {0.25, 0.5, 0.75})), one, 0.01 * one) << "nested";
+  EXPECT_NEAR(volume(joined(box_mesh(), box_mesh(), 1.0, {0.5, 0, 0})), 1.5 * one, 0.01 * one);
+}
+
+TEST(Mesh, ShapesOfOneFile_ShareIt) {
+  KnownMeshes known;
+  ShapeDescription d;
+  d.type = ShapeDescription::Type::kMesh;
+  d.file = "bunny.obj";
+  for (int k = 0; k < 3; ++k) {
+    d.translation = {double(k), 0, 0};
+    ASSERT_TRUE(make_shape(d, scene_meshes().string(), 0.01, false, &known));
+  }
+  EXPECT_EQ(known.size(), 1u);
+  d.scale = 2.0;
+  ASSERT_TRUE(make_shape(d, scene_meshes().string(), 0.01, false, &known));
+  EXPECT_EQ(known.size(), 2u);
 }
 
 TEST(Mesh, Ply_TextAndBinaryHaveTheirVolume) {
