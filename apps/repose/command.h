@@ -37,6 +37,12 @@ struct BenchArguments {
   std::string json;  ///< file; empty: none
 };
 
+struct RecordArguments {
+  SceneArguments scene;
+  std::int64_t steps = 100;
+  std::string out;  ///< folder
+};
+
 struct MovieArguments {
   std::string folder;
   std::string out;  ///< film; empty: FOLDER/NAME.mp4
@@ -50,6 +56,8 @@ int run_command(const RunArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int check_command(const SceneArguments& arguments);
 int bench_command(const BenchArguments& arguments);
+int record_command(const RecordArguments& arguments);
+int compare_command(const std::string& one, const std::string& other);
 int info_command(const std::vector<std::string>& files);
 int movie_command(const MovieArguments& arguments);
 int schema_command(bool reference);

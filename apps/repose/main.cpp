@@ -112,6 +112,25 @@ int main(int count, char** words) {
     code = bench_command(bench);
   });
 
+  RecordArguments record;
+  CLI::App& record_app = *app.add_subcommand(
+      "record", "some steps, with a hash of every channel after each and the last state: for compare");
+  add_scene_options(record_app, record.scene);
+  record_app.add_option("--steps", record.steps, "steps (default 100)")->check(CLI::Range(1, 1000000));
+  record_app.add_option("--out", record.out, "folder of the recording")->required();
+  record_app.callback([&] {
+    const Workers workers(record.scene.threads);
+    code = record_command(record);
+  });
+
+  std::vector<std::string> recordings;
+  CLI::App& compare_app = *app.add_subcommand(
+      "compare", "two recordings, or two runs: the first step, block, particle and channel that differ");
+  compare_app.add_option("folders", recordings, "two folders of record, or two of run")
+      ->required()
+      ->expected(2);
+  compare_app.callback([&] { code = compare_command(recordings[0], recordings[1]); });
+
   std::vector<std::string> files;
   CLI::App& info_app = *app.add_subcommand("info", "what a cache, a checkpoint or a run's folder holds");
   info_app.add_option("files", files, ".vdb, .ply, .vtp, .checkpoint, or the folder of a run")->required();

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "apps/repose/output_folder.h"
 #include "apps/repose/progress.h"
 #include "apps/repose/run_log.h"
+#include "apps/repose/trouble.h"
 #include "engine/io/atomic_file.h"
 #include "engine/reading/identity.h"
 
@@ -21,11 +23,13 @@ namespace repose {
 namespace {
 
 volatile std::sig_atomic_t g_signal = 0;
+std::atomic<Simulation*> g_simulation = nullptr;
 
 /// The first signal asks for a clean end, a second one stops at once.
 void on_signal(int signal) {
   if (g_signal != 0) std::_Exit(128 + signal);
   g_signal = signal;
+  if (Simulation* const simulation = g_simulation) simulation->interrupt();
 }
 
 struct FrameRange {
@@ -46,13 +50,6 @@ Result<FrameRange> parse_frames(const std::string& text, std::int64_t frames) {
   return FrameRange{first, last};
 }
 
-Result<void> write_text(const std::string& path, const std::string& text) {
-  auto file = AtomicFile::create(path);
-  if (!file) return file.error();
-  if (auto written = file->write(text.data(), text.size()); !written) return written;
-  return file->commit();
-}
-
 class Run {
  public:
   Run(const RunArguments& arguments, Scene scene, FrameRange frames, OutputFolder folder,
@@ -64,6 +61,8 @@ class Run {
         simulation_(std::move(simulation)),
         log_(scene_, arguments.scene.quality, *simulation_),
         files_(scene_, folder_) {}
+  Run(const Run&) = delete;
+  ~Run() { g_simulation = nullptr; }
 
   int go();
 
@@ -72,7 +71,6 @@ class Run {
   Error other_scene(Error error) const;
   Result<FrameReport> advance(Progress& progress);
   Result<void> write_frame(const FrameReport& frame);
-  Result<void> write_bundle(const Error& error);
   int interrupted();
   Result<void> save_here();
   int stop(Error error, bool while_stepping);
@@ -88,6 +86,7 @@ class Run {
   std::unique_ptr<Simulation> simulation_;
   RunLog log_;
   FrameFiles files_;
+  Trouble trouble_;
   std::size_t warnings_told_ = 0;
 };
 
@@ -129,6 +128,7 @@ Result<FrameReport> Run::advance(Progress& progress) {
   return simulation_->advance_frame([&](const StepReport& step, const Counters& counters) {
     ++steps;
     log_.add_step(step, *simulation_, counters.frame + 1);
+    trouble_.note(step, counters);
     tell_warnings(progress);
     if (progress.visible()) {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -203,33 +203,6 @@ void Run::tell_warnings(Progress& progress) {
   }
 }
 
-Result<void> Run::write_bundle(const Error& error) {
-  const std::string folder = folder_.path() + "/diagnostics";
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
-  Json::Value json;
-  json["error"] = error.text();
-  json["step"] = Json::Int64(simulation_->counters().step);
-  json["time"] = simulation_->counters().time;
-  if (const auto& failed = simulation_->failed_particle()) {
-    Json::Value& particle = json["particle"];
-    particle["set"] = failed->set;
-    particle["id"] = failed->id;
-    particle["reason"] = failed->reason;
-    particle["determinant"] = failed->determinant;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      particle["block"].append(failed->block[axis]);
-      particle["position"].append(failed->position[axis]);
-      particle["velocity"].append(failed->velocity[axis]);
-      particle["trial_velocity"].append(failed->trial_velocity[axis]);
-    }
-  }
-  json["memory_blocks"] = Json::UInt64(simulation_->memory().blocks);
-  if (auto written = write_text(folder + "/failure.json", json.toStyledString()); !written) return written;
-  if (auto saved = simulation_->save(folder + "/last_good.checkpoint"); !saved) return saved;
-  return write_text(folder + "/scene.json", scene_.canonical + "\n");
-}
-
 /// In the midst of a frame.
 Result<void> Run::save_here() {
   const std::int64_t frame = simulation_->counters().frame;
@@ -257,7 +230,7 @@ int Run::stop(Error error, bool while_stepping) {
       error.message += "; the state is saved in " + folder_.path() + ", from which --resume goes on";
   }
   if (error.kind == ErrorKind::kPhysics) {
-    if (auto written = write_bundle(error); !written)
+    if (auto written = trouble_.write(error, scene_, *simulation_, folder_.path() + "/diagnostics"); !written)
       fail(written.error());
     else
       error.message += "; what led to it is in " + folder_.path() + "/diagnostics";
@@ -272,6 +245,7 @@ int Run::go() {
   }
   if (auto written = write_text(folder_.scene(), scene_.canonical + "\n"); !written)
     return fail(written.error());
+  g_simulation = simulation_.get();
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   tell_integrator();

@@ -1,8 +1,12 @@
 #include "engine/compiler/compiler.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 #include "engine/compiler/compilation.h"
+#include "engine/plan/time_step.h"
 
 namespace repose {
 namespace {
@@ -28,6 +32,8 @@ Result<Surroundings> surroundings_of(const Scene& scene, bool allow_outside_path
   around.flat_axis = scene.grid.plane_strain.value_or(-1);
   around.up = scene.up == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    around.periods.lower[static_cast<int>(axis)] = scene.grid.periodic[axis].lower;
+    around.periods.length[static_cast<int>(axis)] = std::max(0.0, scene.grid.periodic[axis].length);
     around.origin_cells[axis] = static_cast<std::int32_t>(scene.grid.origin_cells[axis]);
   }
   around.folder = scene.folder;
@@ -65,6 +71,20 @@ Result<void> make_effects(Compilation<Real>& compilation) {
   return ready;
 }
 
+/// A particle that comes to the face of a cell gives a node that has next to no mass a finite push: nodes
+/// beyond it are thrown, however short the step. Sand lets go there; what is elastic does not.
+Result<void> check_stencil(const Scene& scene, const std::vector<SetDescription>& sets) {
+  if (std::isfinite(transfer_choice(scene).nodes().feedback)) return {};
+  for (const SetDescription& set : sets) {
+    if (set.yields()) continue;
+    return Error{ErrorKind::kBadScene,
+                 "is stable for no explicit step with an elastic material, and \"" + set.material +
+                     "\" is one; choose \"quadratic\" or \"cubic\"",
+                 scene.where("grid.stencil")};
+  }
+  return {};
+}
+
 /// The key of an effect that is on and that implicit steps cannot have, or null.
 const char* explicit_only(const Effects& effects) {
   const char* key = nullptr;
@@ -72,6 +92,34 @@ const char* explicit_only(const Effects& effects) {
     if (effect.on() && key == nullptr) key = effect.explicit_only();
   });
   return key;
+}
+
+/// The key that bounds the steps with which a scene begins.
+template <class Real>
+std::string key_of(Limit limit, const Scene& scene, const State<Real>& state) {
+  if (limit == Limit::kMaxStep) return "time.max_step";
+  if (limit == Limit::kVelocity || limit == Limit::kStrain) return "bodies";
+  const auto speed = [&](const ParticleSet<Real>& set) {
+    return material_of(scene, set.material).elasticity().sound_speed();
+  };
+  const auto fastest = std::max_element(state.sets.begin(), state.sets.end(),
+                                        [&](const auto& a, const auto& b) { return speed(a) < speed(b); });
+  return "materials." + material_of(scene, fastest->material).name;
+}
+
+/// Refuses a scene whose steps are so short that no frame would end.
+template <class Real>
+Result<void> check_first_step(const Scene& scene, const State<Real>& state, const StepPlan<Real>& plan) {
+  const StepSize size = next_step(plan, state.spacing, state.counters, std::numeric_limits<double>::infinity());
+  const double frame = clock_of(scene.time).length(0);
+  if (frame <= kMostStepsByLimits * size.dt) return {};
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "allows steps of %.3g s (limit: %s), so that a frame of %.3g s would take %.2g of them, and "
+      "at most %.0e are made; softer, slower or denser matter, coarser cells or shorter frames take fewer",
+      size.dt, limit_name(size.limit), frame, frame / size.dt, kMostStepsByLimits);
+  return Error{ErrorKind::kBadScene, text, scene.where(key_of(size.limit, scene, state))};
 }
 
 }  // namespace
@@ -121,7 +169,10 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
     return Error{ErrorKind::kBadScene, "is for explicit steps; leave it out, or time.integrator at explicit",
                  scene.where(only)};
   }
+  if (auto stable = check_stencil(scene, compilation.sets); !compiled.integrator.implicit && !stable)
+    return stable.error();
   compiled.plan = compile_plan(compilation, state, compiled.integrator.implicit);
+  if (auto ends = check_first_step(scene, state, compiled.plan); !ends) return ends.error();
   state.rest.on = compiled.plan.sleep.has_value();
   state.last_motion.on = compiled.plan.implicit.has_value();
   if (const std::string fault = compiled.plan.fault(state); !fault.empty())

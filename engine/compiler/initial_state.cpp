@@ -55,8 +55,8 @@ Result<void> check_memory(const Scene& scene, double seeded, double limit) {
   const double allowed = std::min(limit / bytes, kMost / particles);
   char count[64], spacing[64];
   std::snprintf(count, sizeof count, "%.3g particles", particles);
-  std::snprintf(spacing, sizeof spacing, "; a spacing of %.3g m or more fits",
-                scene.grid.spacing / std::cbrt(allowed));
+  const double coarser = scene.grid.plane_strain ? std::sqrt(allowed) : std::cbrt(allowed);
+  std::snprintf(spacing, sizeof spacing, "; a spacing of %.3g m or more fits", scene.grid.spacing / coarser);
   const std::string most =
       bytes > limit ? "and " + bytes_text(limit) + " may be used" : "and 4e9 particles can be told apart";
   return Error{ErrorKind::kMemory, "needs about " + bytes_text(bytes) + " for " + count + ", " + most + spacing,
@@ -95,6 +95,7 @@ void open_ledger(Compilation<Real>& compilation, State<Real>& state) {
   }
   const std::size_t removing = outlets(scene).size();
   state.ledger.removed.assign(removing * state.sets.size(), 0);
+  state.ledger.strayed.assign(state.sets.size(), 0);
   if (removing > 0) state.counters.unseen_motion = dx;  // they look before the first step
 }
 
@@ -109,18 +110,25 @@ void set_initial_speed(State<Real>& state) {
   }
 }
 
+SeedOptions seeding_of(const Scene& scene, const BodyDescription& body) {
+  return {scene.grid.spacing, body.particles_per_cell, body.sampling, static_cast<std::uint64_t>(body.seed),
+          scene.grid.plane_strain};
+}
+
 using Shapes = std::vector<std::shared_ptr<const Shape>>;
 
 /// The shapes of the bodies, once it is known that their particles fit into memory.
-Result<Shapes> make_shapes(const Scene& scene, const CompileOptions& options) {
+Result<Shapes> make_shapes(const Scene& scene, const CompileOptions& options, KnownMeshes& known) {
   Shapes shapes;
   double particles = 0.0;
   for (const BodyDescription& body : scene.bodies) {
-    auto shape = make_shape(body.shape, scene.folder, scene.grid.spacing, options.allow_outside_paths);
+    auto shape = make_shape(body.shape, scene.folder, scene.grid.spacing, options.allow_outside_paths, &known);
     if (!shape)
       return Error{shape.error().kind, shape.error().text(), scene.where("bodies." + body.name + ".shape")};
-    const double cells = (*shape)->volume() / std::pow(scene.grid.spacing, 3);
-    if (!scene.grid.plane_strain) particles += cells * static_cast<double>(body.particles_per_cell);
+    const auto expected = expected_particles(**shape, seeding_of(scene, body));
+    if (!expected)
+      return Error{expected.error().kind, expected.error().text(), scene.where("bodies." + body.name)};
+    particles += *expected;
     shapes.push_back(*shape);
   }
   if (!std::isfinite(particles)) return shapes;  // seeding refuses the infinite ones
@@ -165,16 +173,14 @@ void initialize(const std::vector<AskedEffect<Real>>& effects, Newcomers<Real>& 
 template <class Real>
 Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
   const Scene& scene = compilation.scene;
-  const auto shapes = make_shapes(scene, compilation.options);
+  const auto shapes = make_shapes(scene, compilation.options, *compilation.surroundings.meshes);
   if (!shapes) return shapes.error();
   std::vector<std::vector<Index3>> cells;
   std::uint32_t next_id = 0;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const BodyDescription& body = scene.bodies[k];
     const Shape& shape = *(*shapes)[k];
-    const SeedOptions seeding{scene.grid.spacing, body.particles_per_cell, body.sampling,
-                              static_cast<std::uint64_t>(body.seed), scene.grid.plane_strain};
-    auto seeds = seed_shape(shape, seeding);
+    auto seeds = seed_shape(shape, seeding_of(scene, body));
     if (!seeds) return Error{seeds.error().kind, seeds.error().text(), scene.where("bodies." + body.name)};
     const Bounds bounds = shape.bounds();
     ParticleSet<Real> set = empty_set(compilation, body.name, body.material);

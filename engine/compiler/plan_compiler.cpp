@@ -39,6 +39,30 @@ UnilateralConstants<Real> unilateral_of(const Scene& scene, const Elasticity& el
   return {static_cast<Real>(-strain), static_cast<Real>(strain), static_cast<Real>(kBend)};
 }
 
+/// Small enough that a step that is too long is found within a frame, and rare enough to cost next to nothing.
+constexpr int kStepsBetweenLooks = 128, kImplicitStepsBetweenLooks = 8;
+/// Of symplectic steps, whose energy swings about a neighbouring one that they keep; and of implicit ones,
+/// which lose it.
+constexpr double kShareOfEnergy = 1e-2, kShareOfEnergyImplicit = 1e-4;
+
+template <class Real>
+std::optional<EnergyAlarm> energy_alarm(const Compilation<Real>& compilation, const State<Real>& state,
+                                        bool implicit) {
+  const Scene& scene = compilation.scene;
+  if (scene.time.energy_alarm == AlarmChoice::kOff) return std::nullopt;
+  EnergyAlarm alarm;
+  alarm.stops = scene.time.energy_alarm == AlarmChoice::kStop;
+  alarm.share = implicit ? kShareOfEnergyImplicit : kShareOfEnergy;
+  alarm.steps = implicit ? kImplicitStepsBetweenLooks : kStepsBetweenLooks;
+  for (const SetDescription& set : compilation.sets) alarm.laws.push_back(set.parameters);
+  alarm.gravity = compilation.surroundings.gravity;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (state.topology.period[axis] != 0) alarm.gravity[static_cast<int>(axis)] = 0.0;
+  }
+  alarm.affine_inertia = scene.grid.spacing * scene.grid.spacing / transfer_choice(scene).nodes().inverse_d;
+  return alarm;
+}
+
 /// What the plan is before it has a pass.
 template <class Real>
 StepPlan<Real> empty_plan(const Compilation<Real>& compilation, const State<Real>& state, bool implicit) {
@@ -52,6 +76,7 @@ StepPlan<Real> empty_plan(const Compilation<Real>& compilation, const State<Real
   plan.limits = step_limits(scene);
   plan.advection = scene.grid.advection;
   if (plan.advection == Advection::kAfterFriction) plan.scratch.share_arena(kArenaAfterFriction, kArena);
+  plan.energy = energy_alarm(compilation, state, implicit);
   if (implicit) plan.implicit.emplace(ImplicitPlan<Real>{scene.implicit, {}});
   double lightest = std::numeric_limits<double>::infinity();
   for (const ParticleSet<Real>& set : state.sets) {
@@ -137,11 +162,13 @@ void PlanCompiler<Real>::begin_nodes() {
 template <class Real>
 void PlanCompiler<Real>::ask_effects() {
   const auto& effects = compilation_.effects;
-  const std::size_t solids = compilation_.surroundings.solids.size();
   const bool logs = std::any_of(effects.begin(), effects.end(), [](const AskedEffect<Real>& asked) {
     return asked.effect->reads_contact_log();
   });
-  if (logs && solids > 0) builder_.make(kContactLog, solids);
+  const auto& solids = compilation_.surroundings.solids;
+  const bool any_moves =
+      std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.moves(); });
+  if (!solids.empty() && (logs || (plan_.energy && any_moves))) builder_.make(kContactLog, solids.size(), logs);
   for (const AskedEffect<Real>& asked : effects) {
     builder_.turn_to(asked.author);
     asked.effect->add_to(builder_);

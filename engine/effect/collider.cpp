@@ -5,6 +5,7 @@
 
 #include "engine/effect/contact_tables.h"
 #include "engine/effect/effect.h"
+#include "engine/effect/thin_solid.h"
 
 namespace repose {
 namespace {
@@ -82,23 +83,32 @@ namespace {
 /// Builds a solid; errors name its key.
 Result<Solid> build(const Collider& collider, const Surroundings& around) {
   const std::string key = "colliders." + collider.name;
-  Solid solid{collider.name, nullptr, collider.hollow, collider.contact, collider.friction, nullptr, nullptr};
+  Solid solid;
+  solid.name = collider.name;
+  solid.hollow = collider.hollow;
+  solid.contact = collider.contact;
+  solid.friction = collider.friction;
   if (collider.frames.given) {
     auto sequence = MeshSequence::make(collider.shape, collider.frames, around.folder, around.spacing,
                                        around.allow_outside_paths);
     if (!sequence) return Error{sequence.error().kind, sequence.error().text(), around.where(key + ".frames")};
     solid.sequence = *sequence;
     solid.shape = solid.sequence->at(collider.frames.start);
-  } else {
-    auto shape = around.shape(collider.shape, key + ".shape");
-    if (!shape) return shape.error();
-    solid.shape = *shape;
+    solid.periods = around.periods;
+    return solid;
   }
+  auto shape = around.shape_alone(collider.shape, key + ".shape");
+  if (!shape) return shape.error();
+  solid.shape = *shape;
   if (collider.motion.given) {
     auto motion = RigidMotion::make(collider.motion);
     if (!motion) return Error{motion.error().kind, motion.error().text(), around.where(key + ".motion")};
     solid.motion = *motion;
+    solid.periods = around.periods;
   }
+  solid.thickened = thickness_wanting(solid, around.spacing);
+  if (solid.thickened > 0.0) solid.shape = thickened(solid.shape, solid.thickened);
+  if (!solid.moves()) solid.shape = in_periods(solid.shape, around.periods);
   return solid;
 }
 
@@ -114,6 +124,13 @@ Result<void> Colliders::furnish(Surroundings& surroundings) const {
 }
 
 namespace {
+
+/// Distance of a solid that moves, as it stands at a time (s).
+double distance_then(const Solid& solid, double time, const Vec3& x) {
+  if (solid.periods.any()) return solid.at(time).distance(x);
+  if (solid.sequence == nullptr) return solid.distance(solid.motion->pose(time).own(x));
+  return (solid.hollow ? -1.0 : 1.0) * solid.sequence->at(time)->signed_distance(x);
+}
 
 /// Solids act on nodes: v* -> v-bar by the constraints, then v-bar -> v-tilde by friction (Klar et al. 2016,
 /// sections 8 and 8.1), in the order of the list.
@@ -144,6 +161,7 @@ class ContactWithSolids : public Effect<Real> {
       if (solid.moves()) disturb(plan.rest, solid);
     }
     add_contacts(plan);
+    if (tables->holds()) hold_particles(plan);
   }
 
  private:
@@ -180,28 +198,34 @@ class ContactWithSolids : public Effect<Real> {
         });
   }
 
+  static void hold_particles(PlanBuilder<Real>& plan) {
+    for (SetSlots<Real>& set : plan.sets) {
+      set.after_motion.add({"hold at solids", "colliders"}, reads(kPosition, kMovingVelocity, kContactTables),
+                           writes(kPosition, kMotion),
+                           [](const auto& at) { at.read(kContactTables).hold(at); });
+    }
+  }
+
   /// What a rigid or a deforming solid reaches while it moves.
   static void disturb(RestSlot<Real>& rest, const Solid& solid) {
     const auto may_reach = [](const State<Real>& state, double distance) {
       return distance <= radius_of_particles_from_nodes() * state.spacing;
     };
     if (solid.sequence != nullptr) {
-      rest.wake("solid " + solid.name,
-                [=](const State<Real>& state, const Index3& block, double from, double to) {
-                  if (solid.sequence->fastest(from, to) == 0.0) return false;
-                  const Vec3 x = BlockPlace<Real>(state, block).middle();
-                  const double side = solid.hollow ? -1.0 : 1.0;
-                  return may_reach(state, side * solid.sequence->at(from)->signed_distance(x)) ||
-                         may_reach(state, side * solid.sequence->at(to)->signed_distance(x));
-                });
+      rest.wake("solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from,
+                                           double to) {
+        if (solid.sequence->fastest(from, to) == 0.0) return false;
+        const Vec3 x = BlockPlace<Real>(state, block).middle();
+        return may_reach(state, distance_then(solid, from, x)) || may_reach(state, distance_then(solid, to, x));
+      });
       return;
     }
-    rest.wake(
-        "solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from, double to) {
-          const Vec3 x = BlockPlace<Real>(state, block).middle();
-          const Vec3 before = solid.motion->pose(from).own(x), after = solid.motion->pose(to).own(x);
-          return before != after && may_reach(state, std::min(solid.distance(before), solid.distance(after)));
-        });
+    rest.wake("solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from,
+                                         double to) {
+      const Vec3 x = BlockPlace<Real>(state, block).middle();
+      const bool rests = solid.motion->pose(from).own(x) == solid.motion->pose(to).own(x);
+      return !rests && may_reach(state, std::min(distance_then(solid, from, x), distance_then(solid, to, x)));
+    });
   }
 
   std::vector<Solid> solids_;

@@ -27,6 +27,12 @@ ContactTables<Real>::ContactTables(std::vector<Solid> solids, ContactLog* log, b
   }
 }
 
+template <class Real>
+bool ContactTables<Real>::holds() const {
+  return any_moves() ||
+         std::any_of(solids_.begin(), solids_.end(), [](const Solid& s) { return s.thickened > 0.0; });
+}
+
 /// How far from its middle a block may feel a solid: its nodes, each with the cell that it may be predicted to
 /// move along each axis, and its own reach.
 template <class Real>
@@ -60,6 +66,8 @@ void ContactTables<Real>::follow_topology(State<Real>& state) {
   spacing_ = state.spacing;
   flat_axis_ = state.topology.flat_axis;
   const auto blocks = state.grid.blocks();
+  const auto occupied = state.grid.occupied_blocks();
+  block_of_occupied_.assign(occupied.begin(), occupied.end());
   of_block_.assign(blocks.size(), nullptr);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     auto found = seen_.find(blocks[b]);
@@ -123,7 +131,7 @@ void ContactTables<Real>::share_out(State<Real>& state) {
   state.after_friction.field.resize(static_cast<std::size_t>(slots));
   state.after_friction.live.assign(static_cast<std::size_t>(slots), 0);
   if (log_ == nullptr) return;
-  log_->follow_topology(blocks, [this](std::size_t b) { return near_any(b); });
+  log_->follow_topology(blocks, [this](std::size_t b) { return log_->all() ? near_any(b) : near_moving(b); });
 }
 
 template <class Real>
@@ -149,61 +157,60 @@ double ContactTables<Real>::fastest(double from, double to) const {
 
 template <class Real>
 bool ContactTables<Real>::near_any(std::size_t block) const {
-  return of_block_[block] != nullptr || (any_moves() && listed_begin_[block] < listed_begin_[block + 1]);
+  return of_block_[block] != nullptr || near_moving(block);
+}
+
+template <class Real>
+bool ContactTables<Real>::near_moving(std::size_t block) const {
+  return any_moves() && listed_begin_[block] < listed_begin_[block + 1];
 }
 
 /// The solids near a block, in the order of the scene.
 template <class Real>
-std::size_t ContactTables<Real>::find_touches(std::size_t block, const BlockPlace<Real>& place,
-                                              Touch* touches) const {
-  std::size_t count = 0;
-  const auto add = [&](const Touch& touch) {
-    REPOSE_ASSERT(count < kMost);
-    touches[count++] = touch;
-  };
+typename ContactTables<Real>::Touches ContactTables<Real>::find_touches(std::size_t block,
+                                                                        const BlockPlace<Real>& place) const {
+  Touches touches;
   if (const NearSolids* near = of_block_[block]) {
-    for (const Near& solid : *near) add({solid.solid, solid.nodes.data(), nullptr});
+    for (const Near& solid : *near) touches.push_back({solid.solid, solid.nodes.data(), nullptr});
   }
-  if (!any_moves()) return count;
+  if (!any_moves()) return touches;
   for (std::size_t i = listed_begin_[block]; i < listed_begin_[block + 1]; ++i) {
     const MovingSolid& moving = moving_[listed_[i]];
     if (moving.distance(place.middle()) > search_distance(place.spacing())) continue;
-    add({moving.index(), nullptr, &moving});
+    touches.push_back({moving.index(), nullptr, &moving});
   }
-  std::sort(touches, touches + count, [](const Touch& a, const Touch& b) { return a.solid < b.solid; });
-  return count;
+  std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) { return a.solid < b.solid; });
+  return touches;
 }
 
 template <class Real>
 template <typename ContactTables<Real>::Beside kBeside, class Record>
-void ContactTables<Real>::collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x,
+void ContactTables<Real>::collide_node(const Touches& touches, AtNode& at, std::size_t node, const Vec3& x,
                                        Real dt, Real* v, Real* rubbed, Record record) const {
   constexpr bool kAnyMoves = kBeside != Beside::kResting;
-  Real impulse[kMost] = {};  // |v-bar - v*| per solid: the impulse over the mass
-  NodeContact<Real> met[kAnyMoves ? kMost : 1];
-  Real walls[kAnyMoves ? kMost : 1][3];
+  const std::size_t count = touches.size();
   const auto moves = [&](std::size_t k) { return kAnyMoves && touches[k].moving != nullptr; };
   const auto contact = [&](std::size_t k) -> const NodeContact<Real>& {
-    return moves(k) ? met[k] : touches[k].nodes[node];
+    return moves(k) ? at.met[k] : touches[k].nodes[node];
   };
-  const auto wall = [&](std::size_t k) -> const Real* { return moves(k) ? walls[k] : nullptr; };
+  const auto wall = [&](std::size_t k) -> Real* { return moves(k) ? at.wall[k].data() : nullptr; };
   for (std::size_t k = 0; k < count; ++k) {
     if (moves(k)) {
       const MovingSolid& solid = *touches[k].moving;
       const auto step = static_cast<double>(dt);
       if (kBeside == Beside::kDeforming && solid.deforms()) {
-        met[k] = solid.meet<true>(x, step, spacing_, flat_axis_, v, walls[k]);
+        at.met[k] = solid.meet<true>(x, step, spacing_, flat_axis_, v, wall(k));
       } else {
-        met[k] = solid.meet<false>(x, step, spacing_, flat_axis_, v, walls[k]);
+        at.met[k] = solid.meet<false>(x, step, spacing_, flat_axis_, v, wall(k));
       }
     }
     record.before(v);
-    impulse[k] = constrain(solids_[touches[k].solid].contact, contact(k), wall(k), dt, v);
+    at.impulse[k] = constrain(solids_[touches[k].solid].contact, contact(k), wall(k), dt, v);
     record.after(touches[k].solid, wall(k), v);
   }
   std::copy_n(v, 3, rubbed);
   for (std::size_t k = 0; k < count; ++k) {
-    const Real bound = static_cast<Real>(solids_[touches[k].solid].friction) * impulse[k];
+    const Real bound = static_cast<Real>(solids_[touches[k].solid].friction) * at.impulse[k];
     if (!(bound > Real(0))) continue;
     record.before(rubbed);
     rub(contact(k).normal, wall(k), bound, rubbed);
@@ -214,14 +221,15 @@ void ContactTables<Real>::collide_node(const Touch* touches, std::size_t count, 
 /// Calls record(mass, place) for a recorder of each node with mass. Returns whether friction changed one.
 template <class Real>
 template <class Record>
-bool ContactTables<Real>::collide_block(const BlockPlace<Real>& place, Real dt, const Touch* touches,
-                                        std::size_t count, Real* nodes, Real* rubbed, Record record) const {
+bool ContactTables<Real>::collide_block(const BlockPlace<Real>& place, Real dt, const Touches& touches,
+                                        Real* nodes, Real* rubbed, Record record) const {
   constexpr bool kRecords = !std::is_same_v<decltype(record(Real(0), Vec3())), NoContactRecorder>;
   Beside beside = kRecords ? Beside::kRigid : Beside::kResting;
-  for (const Touch* touch = touches; touch != touches + count; ++touch) {
-    if (touch->moving != nullptr)
-      beside = std::max(beside, touch->moving->deforms() ? Beside::kDeforming : Beside::kRigid);
+  for (const Touch& touch : touches) {
+    if (touch.moving != nullptr)
+      beside = std::max(beside, touch.moving->deforms() ? Beside::kDeforming : Beside::kRigid);
   }
+  AtNode room(touches.size());
   const auto act = [&]<Beside kBeside>() {
     bool any_friction = false;
     for (std::size_t node = 0; node < kBlockNodes; ++node) {
@@ -229,7 +237,7 @@ bool ContactTables<Real>::collide_block(const BlockPlace<Real>& place, Real dt, 
       std::copy_n(at, kNodeValues, after);
       if (!(at[0] > Real(0))) continue;
       const Vec3 x = kBeside == Beside::kResting ? Vec3(0, 0, 0) : place.node(node);
-      collide_node<kBeside>(touches, count, node, x, dt, at + 1, after + 1, record(at[0], x));
+      collide_node<kBeside>(touches, room, node, x, dt, at + 1, after + 1, record(at[0], x));
       any_friction = any_friction || !std::equal(at, at + kNodeValues, after);
     }
     return any_friction;
@@ -244,18 +252,17 @@ void ContactTables<Real>::collide(std::size_t block, const BlockPlace<Real>& pla
                                   SparseNodeField<Real>& after_friction, ContactLog* log) const {
   if (!near_any(block)) return;
   const std::int32_t slot = after_friction.slot.empty() ? -1 : after_friction.slot[block];
-  Touch touches[kMost];
-  const std::size_t count = find_touches(block, place, touches);
+  const Touches touches = find_touches(block, place);
   Real rubbed[kBlockValues];
   bool any_friction = false;
-  if (log != nullptr) {
+  if (log != nullptr && log->has(block)) {
     ContactSums* const sums = log->begin(block);
-    any_friction = collide_block(place, dt, touches, count, nodes, rubbed, [sums](Real mass, const Vec3& x) {
+    any_friction = collide_block(place, dt, touches, nodes, rubbed, [sums](Real mass, const Vec3& x) {
       return ContactRecorder{sums, static_cast<double>(mass), x};
     });
-  } else if (count > 0) {
-    any_friction = collide_block(place, dt, touches, count, nodes, rubbed,
-                                 [](Real, const Vec3&) { return NoContactRecorder{}; });
+  } else if (!touches.empty()) {
+    any_friction =
+        collide_block(place, dt, touches, nodes, rubbed, [](Real, const Vec3&) { return NoContactRecorder{}; });
   }
   if (slot < 0) return;
   after_friction.live[static_cast<std::size_t>(slot)] = any_friction ? 1 : 0;
@@ -290,12 +297,11 @@ template <class Real>
 void ContactTables<Real>::list(std::size_t block, const BlockPlace<Real>& place, Real dt, const Real* nodes,
                                std::vector<Constraint<Real>>& constraints) const {
   if (!near_any(block)) return;
-  Touch touches[kMost];
-  const std::size_t count = find_touches(block, place, touches);
+  const Touches touches = find_touches(block, place);
   for (std::size_t node = 0; node < kBlockNodes; ++node) {
     if (!(nodes[node * kNodeValues] > Real(0))) continue;
-    for (std::size_t k = 0; k < count; ++k) {
-      const Constraint<Real> made = constraint(touches[k], place, node, dt);
+    for (const Touch& touch : touches) {
+      const Constraint<Real> made = constraint(touch, place, node, dt);
       // And that far a solid comes to meet it.
       const Real comes = std::max(Real(0), dt * dot(made.normal, made.velocity));
       const bool separating = made.contact == Contact::kSeparating;
@@ -309,6 +315,7 @@ template <class Real>
 std::size_t ContactTables<Real>::bytes() const {
   constexpr std::size_t kEntry = 96;  // of the map, with what the heap adds
   std::size_t sum = of_block_.capacity() * sizeof(void*) +
+                    block_of_occupied_.capacity() * sizeof(std::int32_t) +
                     (listed_begin_.capacity() + listed_.capacity()) * sizeof(std::uint32_t);
   for (const auto& [block, near] : seen_) sum += kEntry + near.capacity() * sizeof(Near);
   return sum;

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/effect/moving_solid.h"
@@ -33,6 +35,14 @@ class ContactTables {
   void list(std::size_t block, const BlockPlace<Real>& place, Real dt, const Real* nodes,
             std::vector<Constraint<Real>>& constraints) const;
 
+  /// Whether hold() has anything to do.
+  bool holds() const;
+  /// Keeps particles of an occupied block, which have moved, from going deeper into solids that move, or that
+  /// have been thickened, than kDepthHeld, or than they were. Nodes hold what they see: but a particle beside a
+  /// wall that comes takes part of its velocity from nodes ahead of the wall, and lets it come in.
+  template <class Access>
+  void hold(const Access& at) const;
+
   bool any_friction() const { return friction_; }
   std::size_t bytes() const;
   bool any_moves() const { return !moving_.empty(); }
@@ -40,6 +50,9 @@ class ContactTables {
   double fastest(double from, double to) const;
 
  private:
+  template <class Access, class Distance, class Before, class Normal>
+  void hold_at(const Access& at, const Distance& distance, const Before& before, const Normal& normal) const;
+
   /// Beside one solid that rests.
   struct Near {
     std::size_t solid;
@@ -53,7 +66,21 @@ class ContactTables {
     const NodeContact<Real>* nodes;  // null where it moves
     const MovingSolid* moving;       // null where it rests
   };
-  static constexpr std::size_t kMost = 16;
+  /// One for each solid near a block. They are few, and then the heap is not asked; they may be any number.
+  template <class T>
+  using PerTouch = boost::container::small_vector<T, 16>;
+  using Touches = PerTouch<Touch>;
+  /// Of one node.
+  struct AtNode {
+    explicit AtNode(std::size_t touches)
+        : impulse(touches),
+          met(touches, boost::container::default_init),
+          wall(touches, boost::container::default_init) {}
+    PerTouch<Real> impulse;  ///< |v-bar - v*|: the impulse over the mass, m/s
+    // Beside solids that move:
+    PerTouch<NodeContact<Real>> met;
+    PerTouch<std::array<Real, 3>> wall;
+  };
 
   /// The most that any solid near a block does. The laws are compiled for each, so that none costs more than it
   /// must.
@@ -66,13 +93,14 @@ class ContactTables {
   void share_out(State<Real>& state);
   bool rubs(std::size_t block) const;
   bool near_any(std::size_t block) const;
-  std::size_t find_touches(std::size_t block, const BlockPlace<Real>& place, Touch* touches) const;
+  bool near_moving(std::size_t block) const;
+  Touches find_touches(std::size_t block, const BlockPlace<Real>& place) const;
   template <Beside kBeside, class Record>
-  void collide_node(const Touch* touches, std::size_t count, std::size_t node, const Vec3& x, Real dt, Real* v,
+  void collide_node(const Touches& touches, AtNode& at, std::size_t node, const Vec3& x, Real dt, Real* v,
                     Real* rubbed, Record record) const;
   template <class Record>
-  bool collide_block(const BlockPlace<Real>& place, Real dt, const Touch* touches, std::size_t count,
-                     Real* nodes, Real* rubbed, Record record) const;
+  bool collide_block(const BlockPlace<Real>& place, Real dt, const Touches& touches, Real* nodes, Real* rubbed,
+                     Record record) const;
   Constraint<Real> constraint(const Touch& touch, const BlockPlace<Real>& place, std::size_t node,
                               Real dt) const;
 
@@ -81,7 +109,8 @@ class ContactTables {
   bool friction_ = false;
   double spacing_ = 0.0;
   int flat_axis_ = -1;
-  std::map<Index3, NearSolids> seen_;        // every block ever reached; entries stay where they are
+  std::map<Index3, NearSolids> seen_;  // every block ever reached; entries stay where they are
+  std::vector<std::int32_t> block_of_occupied_;
   std::vector<const NearSolids*> of_block_;  // per block of the grid; null where no resting solid is near
   std::vector<MovingSolid> moving_;
   std::vector<std::uint32_t> listed_begin_;  // per block, in listed_; empty where nothing moves
@@ -90,5 +119,62 @@ class ContactTables {
 };
 
 inline constexpr TableHandle<"contacts", ContactTables> kContactTables;
+
+/// Cells that a particle may come to lie within a solid; most that it is moved out in a step by one that
+/// deforms, of which nobody knows how deep it lay before.
+inline constexpr double kDepthHeld = 0.5, kMostPush = 0.1;
+
+template <class Real>
+template <class Access>
+void ContactTables<Real>::hold(const Access& at) const {
+  const auto block = static_cast<std::size_t>(block_of_occupied_[at.occupied()]);
+  if (const NearSolids* near = of_block_[block]) {
+    for (const Near& resting : *near) {
+      const Solid& solid = solids_[resting.solid];
+      if (solid.thickened == 0.0) continue;
+      const auto distance = [&solid](const Vec3& x) { return std::optional(solid.distance(x)); };
+      hold_at(at, distance, distance, [&solid](const Vec3& x, double h) { return solid.normal(x, h); });
+    }
+  }
+  if (!near_moving(block)) return;
+  const Vec3 middle = at.world(Vec3(kMiddleOfParticles[0], kMiddleOfParticles[1], kMiddleOfParticles[2]));
+  for (std::size_t i = listed_begin_[block]; i < listed_begin_[block + 1]; ++i) {
+    const MovingSolid& solid = moving_[listed_[i]];
+    if (solid.stands()) continue;
+    if (solid.distance(in_plane(middle, flat_axis_)) > radius_of_particles() * at.spacing()) continue;
+    hold_at(
+        at, [&solid](const Vec3& x) { return std::optional(solid.distance(x)); },
+        [&solid](const Vec3& x) { return solid.distance_before(x); },
+        [&solid](const Vec3& x, double h) { return solid.normal(x, h); });
+  }
+}
+
+/// At one solid: its distance after the step and before it, and its normal.
+template <class Real>
+template <class Access, class Distance, class Before, class Normal>
+void ContactTables<Real>::hold_at(const Access& at, const Distance& distance, const Before& before,
+                                  const Normal& normal) const {
+  const auto x = at.write(kPosition);
+  const auto v = at.read(kMovingVelocity);
+  Motion<Real>& motion = at.write(kMotion);
+  const double dx = at.spacing(), dt = static_cast<double>(at.dt());
+  for (std::size_t p = 0; p < at.count(); ++p) {
+    const Vec3 end = in_plane(at.world(Vec3(double(x[0][p]), double(x[1][p]), double(x[2][p]))), flat_axis_);
+    const double depth = -*distance(end);
+    if (depth <= kDepthHeld * dx) continue;
+    const Vec3 way = dt * Vec3(double(v[0][p]), double(v[1][p]), double(v[2][p]));
+    const std::optional<double> was = before(in_plane(end - way, flat_axis_));
+    const double allowed = std::max(kDepthHeld * dx, was ? -*was : depth - kMostPush * dx);
+    if (depth <= allowed) continue;
+    const Vec3 push = (depth - allowed) / dx * in_plane(normal(end, 0.25 * dx), flat_axis_);
+    for (int axis = 0; axis < 3; ++axis) {
+      Real& coordinate = x[static_cast<std::size_t>(axis)][p];
+      coordinate += static_cast<Real>(push[axis]);
+      if (axis == flat_axis_) continue;
+      motion.lowest = std::min(motion.lowest, coordinate);
+      motion.highest = std::max(motion.highest, coordinate);
+    }
+  }
+}
 
 }  // namespace repose

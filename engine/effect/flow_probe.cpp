@@ -1,6 +1,6 @@
 #include "engine/effect/flow_probe.h"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 
 #include "engine/state/block_extent.h"
@@ -18,54 +18,50 @@ void FlowCounts::expect_sets(std::size_t sets) {
 template <class Real>
 void FlowCounts::follow_topology(const State<Real>& state) {
   // Within it a particle is, and moves by a cell at most.
-  const double near = radius_of_particles();
-  const auto occupied_blocks = state.grid.occupied_blocks();
-  at_origin_.resize(occupied_blocks.size() * planes_.size());
-  near_.assign(occupied_blocks.size(), 0);
-  for (std::size_t occupied = 0; occupied < occupied_blocks.size(); ++occupied) {
+  const double reach = radius_of_particles();
+  near_.clear();
+  near_begin_.assign(1, 0);
+  for (std::size_t occupied = 0; occupied < state.grid.occupied_blocks().size(); ++occupied) {
     const Index3 block = state.grid.occupied_coordinates(occupied);
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       const FlowPlane& plane = planes_[k];
       const double origin = plane.normal.dot(state.world(block, {0, 0, 0}) - plane.point) / state.spacing;
-      at_origin_[occupied * planes_.size() + k] = origin;
-      if (std::abs(origin + 2.0 * plane.normal.sum()) < near) near_[occupied] |= std::uint32_t{1} << k;
+      if (std::abs(origin + 2.0 * plane.normal.sum()) < reach) near_.push_back({k, origin});
     }
+    near_begin_.push_back(near_.size());
   }
 }
 
-template <class Real>
-std::uint32_t FlowCounts::sides(std::size_t occupied, const std::array<const Real*, 3>& x,
-                                std::size_t p) const {
-  std::uint32_t sides = 0;
-  for (std::uint32_t rest = near_[occupied]; rest != 0; rest &= rest - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(rest));
-    const Vec3& n = planes_[k].normal;
-    const double distance = at_origin_[occupied * planes_.size() + k] + n[0] * double(x[0][p]) +
-                            n[1] * double(x[1][p]) + n[2] * double(x[2][p]);
-    if (distance > 0.0) sides |= std::uint32_t{1} << k;
-  }
-  return sides;
+std::span<const FlowCounts::Near> FlowCounts::near(std::size_t occupied) const {
+  return std::span(near_).subspan(near_begin_[occupied], near_begin_[occupied + 1] - near_begin_[occupied]);
 }
 
 template <class Real>
-void FlowCounts::note_sides(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t count,
-                            Real* noted) const {
-  if (near_[occupied] == 0) return;
-  for (std::size_t p = 0; p < count; ++p) noted[p] = static_cast<Real>(sides(occupied, x, p));
+void FlowCounts::note_places(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t count,
+                             const std::array<Real*, 3>& before) const {
+  if (near(occupied).empty()) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(x[axis], count, before[axis]);
 }
 
 template <class Real>
 void FlowCounts::count(std::size_t occupied, std::size_t set, const std::array<const Real*, 3>& x,
-                       std::size_t count, const Real* noted) {
-  if (near_[occupied] == 0) return;
+                       std::size_t count, const std::array<const Real*, 3>& before) {
   const std::size_t sets = crossings_.size() / planes_.size();
-  for (std::size_t p = 0; p < count; ++p) {
-    const std::uint32_t now = sides(occupied, x, p);
-    for (std::uint32_t rest = now ^ static_cast<std::uint32_t>(noted[p]); rest != 0; rest &= rest - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(rest));
-      Crossings& crossings = crossings_[k * sets + set];
-      ++((now >> k & 1u) != 0 ? crossings.forth : crossings.back);
+  for (const Near& at : near(occupied)) {
+    const Vec3& n = planes_[at.plane].normal;
+    const auto is_beyond = [&](const std::array<const Real*, 3>& place, std::size_t p) {
+      return at.origin + n[0] * double(place[0][p]) + n[1] * double(place[1][p]) + n[2] * double(place[2][p]) >
+             0.0;
+    };
+    std::int64_t forth = 0, back = 0;
+    for (std::size_t p = 0; p < count; ++p) {
+      const bool was = is_beyond(before, p), is = is_beyond(x, p);
+      forth += is && !was ? 1 : 0;
+      back += was && !is ? 1 : 0;
     }
+    Crossings& crossings = crossings_[at.plane * sets + set];
+    if (forth > 0) crossings.forth += forth;
+    if (back > 0) crossings.back += back;
   }
 }
 
@@ -84,10 +80,10 @@ void FlowCounts::take(const State<Real>& state, std::size_t plane, double* talli
 
 #define REPOSE_INSTANTIATE(Real)                                                                            \
   template void FlowCounts::follow_topology(const State<Real>&);                                            \
-  template void FlowCounts::note_sides(std::size_t, const std::array<const Real*, 3>&, std::size_t, Real*)  \
-      const;                                                                                                \
+  template void FlowCounts::note_places(std::size_t, const std::array<const Real*, 3>&, std::size_t,        \
+                                        const std::array<Real*, 3>&) const;                                 \
   template void FlowCounts::count(std::size_t, std::size_t, const std::array<const Real*, 3>&, std::size_t, \
-                                  const Real*);                                                             \
+                                  const std::array<const Real*, 3>&);                                       \
   template void FlowCounts::take(const State<Real>&, std::size_t, double*);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

@@ -3,7 +3,9 @@
 // matter.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <span>
 #include <vector>
 
 #include "engine/effect/probe.h"
@@ -13,9 +15,6 @@ namespace repose {
 
 class FlowCounts {
  public:
-  /// What kSides can hold as a whole number.
-  static constexpr std::size_t kMost = 20;
-
   explicit FlowCounts(std::vector<FlowPlane> planes);
 
   std::size_t planes() const { return planes_.size(); }
@@ -24,15 +23,15 @@ class FlowCounts {
   /// Which blocks are near which planes; after sort events.
   template <class Real>
   void follow_topology(const State<Real>& state);
-  /// Of particles of an occupied block, at positions in cells from its block's origin: on which sides they are,
-  /// a bit per plane near it, set where the particle is before it, as a whole number.
+  /// Of particles of an occupied block that is near any: where they are before they move, in cells from its
+  /// block's origin.
   template <class Real>
-  void note_sides(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t count,
-                  Real* sides) const;
-  /// Counts those of a set that are on other sides than was noted.
+  void note_places(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t count,
+                   const std::array<Real*, 3>& before) const;
+  /// Counts those of a set that have crossed.
   template <class Real>
   void count(std::size_t occupied, std::size_t set, const std::array<const Real*, 3>& x, std::size_t count,
-             const Real* sides);
+             const std::array<const Real*, 3>& before);
 
   /// Adds what crossed since the last call: particles and kg forth, particles and kg back.
   template <class Real>
@@ -40,25 +39,28 @@ class FlowCounts {
   static constexpr std::size_t kTallies = 4;
 
   std::size_t bytes() const {
-    return at_origin_.capacity() * sizeof(double) + near_.capacity() * sizeof(std::uint32_t);
+    return near_begin_.capacity() * sizeof(std::size_t) + near_.capacity() * sizeof(Near);
   }
 
  private:
   struct Crossings {
     std::atomic<std::int64_t> forth{0}, back{0};
   };
-  template <class Real>
-  std::uint32_t sides(std::size_t occupied, const std::array<const Real*, 3>& x, std::size_t p) const;
+  struct Near {
+    std::size_t plane;
+    double origin;  ///< its distance from the block's origin, cells
+  };
+  std::span<const Near> near(std::size_t occupied) const;
 
-  std::vector<FlowPlane> planes_;     // with unit normals
-  std::vector<double> at_origin_;     // per occupied block and plane: distance of the block's origin, cells
-  std::vector<std::uint32_t> near_;   // per occupied block: a bit per plane
-  std::vector<Crossings> crossings_;  // per plane and set
+  std::vector<FlowPlane> planes_;  // with unit normals
+  std::vector<Near> near_;
+  std::vector<std::size_t> near_begin_;  // per occupied block, in near_
+  std::vector<Crossings> crossings_;     // per plane and set
 };
 
 template <class>
 using FlowCountsOf = FlowCounts;
 inline constexpr TableHandle<"planes of flow", FlowCountsOf> kFlows;
-inline constexpr Handle<"sides of planes", Place::kScratch> kSides;
+inline constexpr Handle<"places before motion", Place::kScratch, 3> kPlacesBefore;
 
 }  // namespace repose

@@ -94,6 +94,24 @@ struct ReadyField {
     return says.angular_velocity / far * along.cross(out);
   }
 
+  /// Of air on matter, drag m (u - v) . v <= drag m u^2/4.
+  double most_power(const MatterInMotion& matter) const {
+    const auto of_air = [&](double speed) { return 0.25 * matter.mass * says.drag * speed * speed; };
+    switch (says.type) {
+      case ForceField::Type::kUniform:
+        return says.acceleration.norm() * matter.momenta();
+      case ForceField::Type::kAccelerationGrid:
+        return std::abs(says.scale) * values->largest() * matter.momenta();
+      case ForceField::Type::kWind:
+        return of_air(says.velocity.norm());
+      case ForceField::Type::kVortex:
+        return of_air(says.angular_velocity * says.radius);
+      case ForceField::Type::kWindGrid:
+        return of_air(says.scale * values->largest());
+    }
+    return 0.0;
+  }
+
   /// What the field makes of a velocity at x in a step of dt.
   Vec3 act(const Vec3& x, const Vec3& v, double dt) const {
     if (says.type == ForceField::Type::kUniform) return v + dt * says.acceleration;
@@ -152,6 +170,7 @@ class WindsAndAccelerations : public Effect<Real> {
         const bool changes = within_step(field.says.start, from, to) || within_step(field.says.end, from, to);
         return changes && field.reaches(BlockPlace<Real>(state, block));
       });
+      plan.drives.by_force([field](const MatterInMotion& matter) { return field.most_power(matter); });
       plan.forces.add({name, "force_fields." + field.says.name}, reads(kNodeVelocity), writes(kNodeVelocity),
                       [field](const auto& at) { field.act_on_block(at); });
     }

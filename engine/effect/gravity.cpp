@@ -46,6 +46,7 @@ class UniformGravity : public Effect<Real> {
       plan.rest.wake("gravity",
                      [ramp](const State<Real>&, const Index3&, double from, double) { return from < ramp; });
     }
+    drive(plan);
     plan.forces.add({"gravity", "gravity"}, reads(kNodeVelocity), writes(kNodeVelocity),
                     [gravity = gravity_, kernel = plan.kernels().node.accelerate](const auto& at) {
                       const double dt = static_cast<double>(at.dt());
@@ -61,6 +62,20 @@ class UniformGravity : public Effect<Real> {
   }
 
  private:
+  /// Beyond the potential of the full acceleration along axes that do not repeat.
+  void drive(PlanBuilder<Real>& plan) const {
+    Vec3 round = Vec3::Zero();  // along those that do
+    for (int axis = 0; axis < 3; ++axis) {
+      if (plan.state().topology.period[static_cast<std::size_t>(axis)] != 0)
+        round[axis] = gravity_.acceleration[axis];
+    }
+    const double ramp = gravity_.ramp, going_round = round.norm(), full = gravity_.acceleration.norm();
+    if (ramp == 0.0 && going_round == 0.0) return;
+    plan.drives.by_force([=](const MatterInMotion& matter) {
+      return (matter.time < ramp ? full : going_round) * matter.momentum;
+    });
+  }
+
   Gravity gravity_;
 };
 

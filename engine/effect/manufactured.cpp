@@ -253,6 +253,7 @@ class KnownMotion : public Effect<Real> {
       const ManufacturedSolution* solution = manufactured_.find(set.description.name);
       if (solution == nullptr || !solution->pushes()) continue;
       push(set, *solution);
+      plan.drives.beyond_account();
       // Blocks do not know whose particles they hold.
       plan.rest.wake("manufactured." + solution->body,
                      [](const State<Real>&, const Index3&, double, double) { return true; });

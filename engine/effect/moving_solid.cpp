@@ -32,6 +32,7 @@ MovingSolid::MovingSolid(const Solid& solid, std::size_t index) : solid_(solid),
   if (deforms()) return;
   const Bounds body = solid_.shape->bounds();
   const bool finite = body.lower.allFinite() && body.upper.allFinite();
+  middle_ = finite ? Vec3(0.5 * (body.lower + body.upper)) : solid_.motion->pivot();
   radius_ = finite ? farthest(body, solid_.motion->pivot()) : std::numeric_limits<double>::infinity();
 }
 
@@ -53,9 +54,32 @@ void MovingSolid::list_at_end() {
   listed_shape_ = solid_.sequence->at(window_);
 }
 
+/// What is inside a hollow solid is within any image of its shape: so it is the shape that is to be near.
+Vec3 MovingSolid::image_at(const Placement& pose, const Vec3& x) const {
+  return nearest_image(solid_.periods, x, pose.point(middle_),
+                       [&](const Vec3& y) { return solid_.shape->signed_distance(pose.own(y)); });
+}
+
+Vec3 MovingSolid::image_of(const Shape& shape, const Vec3& x) const {
+  const Bounds bounds = shape.bounds();
+  return nearest_image(solid_.periods, x, 0.5 * (bounds.lower + bounds.upper),
+                       [&](const Vec3& y) { return shape.signed_distance(y); });
+}
+
+Vec3 MovingSolid::image(const Vec3& x) const {
+  return deforms() ? image_of(*shape_, x) : image_at(end_, x);
+}
+
+double MovingSolid::distance_at(const Placement& pose, const Vec3& x) const {
+  return solid_.distance(pose.own(solid_.periods.any() ? image_at(pose, x) : x));
+}
+
+double MovingSolid::distance_to(const Shape& shape, const Vec3& x) const {
+  return (solid_.hollow ? -1.0 : 1.0) * shape.signed_distance(solid_.periods.any() ? image_of(shape, x) : x);
+}
+
 double MovingSolid::listed_distance(const Vec3& x) const {
-  if (!deforms()) return solid_.distance(listed_.own(x));
-  return (solid_.hollow ? -1.0 : 1.0) * listed_shape_->signed_distance(x);
+  return deforms() ? distance_to(*listed_shape_, x) : distance_at(listed_, x);
 }
 
 bool MovingSolid::prepare(double time, double dt, const Bounds& nodes, double margin) {
@@ -72,8 +96,17 @@ bool MovingSolid::prepare(double time, double dt, const Bounds& nodes, double ma
 }
 
 double MovingSolid::distance(const Vec3& x) const {
-  if (!deforms()) return solid_.distance(end_.own(x));
-  return (solid_.hollow ? -1.0 : 1.0) * shape_->signed_distance(x);
+  return deforms() ? distance_to(*shape_, x) : distance_at(end_, x);
+}
+
+std::optional<double> MovingSolid::distance_before(const Vec3& x) const {
+  return deforms() ? std::nullopt : std::optional(distance_at(begin_, x));
+}
+
+Vec3 MovingSolid::normal(const Vec3& x, double h) const {
+  const Vec3 at = solid_.periods.any() ? image(x) : x;
+  if (!deforms()) return end_.direction(solid_.normal(end_.own(at), h));
+  return (solid_.hollow ? -1.0 : 1.0) * shape_->normal(at, h);
 }
 
 double MovingSolid::fastest(double from, double to, const Bounds& nodes) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "engine/effect/solid.h"
 #include "engine/geometry/mesh_sequence.h"
@@ -26,6 +27,8 @@ class MovingSolid {
   MovingSolid(const Solid& solid, std::size_t index);
 
   std::size_t index() const { return index_; }
+  /// Whether it stands still in the step.
+  bool stands() const { return deforms() ? ways_per_second_ == 0.0 : still_; }
   bool deforms() const { return solid_.sequence != nullptr; }
 
   /// Blocks are listed as it stands at a time (s).
@@ -41,20 +44,33 @@ class MovingSolid {
 
   /// Signed distance when the step ends.
   double distance(const Vec3& x) const;
+  /// The same when the step begins; nothing where it deforms.
+  std::optional<double> distance_before(const Vec3& x) const;
+  /// Out of it, when the step ends.
+  Vec3 normal(const Vec3& x, double h) const;
   /// Largest speed of its surface within `nodes` between two times (s), m/s.
   double fastest(double from, double to, const Bounds& nodes) const;
+
+  /// Where space repeats: the image of x that is nearest to it when the step ends.
+  Vec3 image(const Vec3& x) const;
 
   /// A node beside it; `wall` becomes the velocity that keeps a point of the solid at its place in the body
   /// over the whole step, (x(t + dt) - x(t))/dt. It is affine in x where the solid is rigid, so what sticks is
   /// carried without drift, where the velocity of the moment would let it spiral outwards by (w dt)^2/2 a step.
   template <bool kDeforms, class Real>
-  NodeContact<Real> meet(const Vec3& x, double dt, double spacing, int flat_axis, const Real* v,
+  NodeContact<Real> meet(const Vec3& node, double dt, double spacing, int flat_axis, const Real* v,
                          Real* wall) const;
 
  private:
+  Vec3 image_at(const Placement& pose, const Vec3& x) const;
+  Vec3 image_of(const Shape& shape, const Vec3& x) const;
+  double distance_at(const Placement& pose, const Vec3& x) const;
+  double distance_to(const Shape& shape, const Vec3& x) const;
+
   Solid solid_;
   std::size_t index_;
   double radius_ = 0.0;             // of a rigid one's surface about the pivot, m; infinite for planes
+  Vec3 middle_ = Vec3::Zero();      // of a rigid one's bounds, or its pivot, as a point of the body
   Placement listed_, begin_, end_;  // when the list was made; at the ends of the step
   bool still_ = false;              // begin is end
   // Of one that deforms. Its lists begin with windows of time, whatever the step that asks: so a run that goes
@@ -65,9 +81,10 @@ class MovingSolid {
 };
 
 template <bool kDeforms, class Real>
-[[gnu::always_inline]] inline NodeContact<Real> MovingSolid::meet(const Vec3& x, double dt, double spacing,
+[[gnu::always_inline]] inline NodeContact<Real> MovingSolid::meet(const Vec3& node, double dt, double spacing,
                                                                   int flat_axis, const Real* v,
                                                                   Real* wall) const {
+  const Vec3 x = solid_.periods.any() ? image(node) : node;
   const bool separating = solid_.contact == Contact::kSeparating;
   const double path = separating ? dt * std::sqrt(static_cast<double>(dot(v, v))) : 0.0;
   const NodeContact<Real> out_of_reach{std::numeric_limits<Real>::max(), {Real(0), Real(0), Real(0)}};

@@ -132,6 +132,7 @@ class HeldNodes : public Effect<Real> {
     plan.make(kPinnedNodes, pins_);
     plan.after_sort.add({"pinned nodes", "pins"}, reads(kTopology), writes(kPinnedNodes),
                         [](const auto& at) { at.write(kPinnedNodes).follow_topology(at.state()); });
+    plan.drives.by_drawing(fastest(pins_, 0.0, kForEver));
     plan.speeds.add([pins = pins_](double from, double to) { return fastest(pins, from, to); });
     plan.rest.wake("pins",
                    [pins = pins_](const State<Real>& state, const Index3& block, double from, double to) {

@@ -11,6 +11,7 @@
 //   measures        figures of a frame
 //   rest            whether blocks sleep, and what wakes them
 //   speeds          of what is no particle
+//   drives          what gives energy to matter
 #pragma once
 
 #include <vector>
@@ -98,6 +99,7 @@ class PlanBuilder {
         measures(plan.measures, author_, plan.passes()),
         rest(plan),
         speeds(plan.speeds),
+        drives(plan.energy),
         plan_(plan),
         state_(all),
         initialize_(std::move(make_ready)),
@@ -122,6 +124,7 @@ class PlanBuilder {
   MeasureSlot<Real> measures;
   RestSlot<Real> rest;
   SpeedSlot speeds;
+  DriveSlot drives;
 
   /// Calls visit(slots, parameters) for each set whose material has an entry in a ConeDescription.
   template <class From, class Visit>

@@ -213,11 +213,10 @@ class Measuring : public Effect<Real> {
  public:
   explicit Measuring(const Probes& probes) : list_(probes.list) {}
 
-  /// Errors: 65, a force on a solid that is not there, a line or flows that cannot be measured.
+  /// Errors: 65, a force on a solid that is not there, a line that cannot be measured.
   Result<void> prepare(const Surroundings& surroundings) override {
     up_ = surroundings.up;
     gravity_ = surroundings.gravity;
-    std::size_t flows = 0;
     for (const ProbeDescription& probe : list_) {
       const auto refuse = [&](const std::string& key, const std::string& message) {
         return Error{ErrorKind::kBadScene, message, surroundings.where("probes." + probe.name + key)};
@@ -233,8 +232,6 @@ class Measuring : public Effect<Real> {
         if (!(line.cross(surroundings.up).norm() > 1e-9))
           return refuse(".to", "must not lie above or below \"from\"; the line runs along the ground");
       }
-      if (probe.type == Type::kFlow && ++flows > FlowCounts::kMost)
-        return refuse("", "is one flow too many; a scene may have " + std::to_string(FlowCounts::kMost));
     }
     return {};
   }
@@ -282,14 +279,16 @@ class Measuring : public Effect<Real> {
     plan.after_sort.add({"blocks near planes of flow", "probes"}, reads(kTopology), writes(kFlows),
                         [](const auto& at) { at.write(kFlows).follow_topology(at.state()); });
     for (SetSlots<Real>& set : plan.sets) {
-      set.before_motion.add(
-          {"sides of planes", "probes"}, reads(kPosition, kFlows), writes(kSides), [](const auto& at) {
-            at.read(kFlows).note_sides(at.occupied(), at.read(kPosition), at.count(), at.write(kSides));
-          });
-      set.after_motion.add(
-          {"count flow", "probes"}, reads(kPosition, kSides), writes(kFlows), [k = set.index](const auto& at) {
-            at.write(kFlows).count(at.occupied(), k, at.read(kPosition), at.count(), at.read(kSides));
-          });
+      set.before_motion.add({"places before motion", "probes"}, reads(kPosition, kFlows), writes(kPlacesBefore),
+                            [](const auto& at) {
+                              at.read(kFlows).note_places(at.occupied(), at.read(kPosition), at.count(),
+                                                          at.write(kPlacesBefore));
+                            });
+      set.after_motion.add({"count flow", "probes"}, reads(kPosition, kPlacesBefore), writes(kFlows),
+                           [k = set.index](const auto& at) {
+                             at.write(kFlows).count(at.occupied(), k, at.read(kPosition), at.count(),
+                                                    at.read(kPlacesBefore));
+                           });
     }
   }
 

@@ -2,7 +2,9 @@
 // them into its list.
 #pragma once
 
+#include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -205,6 +207,29 @@ class RestSlot {
 
  private:
   StepPlan<Real>* plan_;
+};
+
+/// What gives energy to matter, for the alarm that tells of energy from nowhere: whatever does so says it,
+/// whether or not there is an alarm. Gravity, solids and what begins are known.
+class DriveSlot {
+ public:
+  explicit DriveSlot(std::optional<EnergyAlarm>& alarm) : alarm_(&alarm) {}
+
+  /// A force, by its most power.
+  void by_force(EnergyAlarm::Power power) {
+    if (*alarm_) (*alarm_)->powers.push_back(std::move(power));
+  }
+  /// Something that draws matter at a speed (m/s), with whatever force that takes.
+  void by_drawing(double speed) {
+    if (*alarm_) (*alarm_)->drawn = std::max((*alarm_)->drawn, speed);
+  }
+  /// Something that no bound is known of: nothing is watched.
+  void beyond_account() {
+    if (*alarm_) (*alarm_)->beyond_account = true;
+  }
+
+ private:
+  std::optional<EnergyAlarm>* alarm_;
 };
 
 /// How fast, in m/s, what is no particle moves at most between two times (s).

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/geometry/motion.h"
+#include "engine/geometry/periods.h"
 #include "engine/geometry/shape.h"
 #include "engine/plan/constraint.h"
 
@@ -21,6 +22,9 @@ struct Solid {
   double friction = 0.0;
   std::shared_ptr<const RigidMotion> motion;     ///< null where it rests or deforms
   std::shared_ptr<const MeshSequence> sequence;  ///< null but where it deforms; `shape` is then its first frame
+
+  double thickened = 0.0;  ///< m, to either side, for nodes to see it; its shape has that in it
+  Periods periods{};  ///< of space, for one that moves; the shape of one that rests has them in it
 
   bool moves() const { return motion != nullptr || sequence != nullptr; }
 

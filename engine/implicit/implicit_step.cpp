@@ -56,6 +56,7 @@ ImplicitReport ImplicitStep<Real>::solve() {
   NewtonStop stop;
   stop.iterations = static_cast<int>(settings.newton_iterations);
   stop.tolerance = settings.tolerance;
+  stop.interrupted = [this] { return sweep_.interrupted(); };
   linear_ = SolveStatus::kConverged;
   report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve(norm);
   report.linear = linear_;
@@ -90,7 +91,8 @@ typename ImplicitStep<Real>::Solved ImplicitStep<Real>::solve(double share, Vect
   const auto& settings = implicit_.settings;
   // A breakdown late in a solve still leaves a step worth taking.
   constexpr double kEnough = 0.5;
-  const Stop stop{0.0, share, static_cast<int>(settings.krylov_iterations), false, kEnough};
+  const Stop stop{0.0,   share,   static_cast<int>(settings.krylov_iterations),
+                  false, kEnough, [this] { return sweep_.interrupted(); }};
   SolveReport report;
   report = symmetric_ ? symmetric_->solve(system_, right_, step, stop)
                       : general_->solve(system_, right_, step, stop);

@@ -57,6 +57,8 @@ class ParticleSweep {
   /// Whether the C of particles is their gradient of velocity.
   bool keeps_gradient() const { return plan().transfer.figures().affine == Affine::kFull; }
 
+  bool interrupted() const { return blocks_.interrupted(); }
+
   template <class Body>
   void for_each_block(Body body) {
     blocks_.for_each_block(body);

@@ -132,4 +132,11 @@ Result<void> AtomicFile::commit() {
   return {};
 }
 
+Result<void> write_text(const std::string& path, const std::string& text) {
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  if (auto written = file->write(text.data(), text.size()); !written) return written;
+  return file->commit();
+}
+
 }  // namespace repose

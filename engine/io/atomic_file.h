@@ -47,4 +47,7 @@ class AtomicFile {
   Result<void> state_;
 };
 
+/// The whole of a small file. Errors as above.
+Result<void> write_text(const std::string& path, const std::string& text);
+
 }  // namespace repose

@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written as memory lies");
 
-constexpr char kMagic[16] = "REPOSE STATE 4\n";
+constexpr char kMagic[16] = "REPOSE STATE 5\n";
 
 struct ChunkHead {
   char name[16] = {};
@@ -142,6 +142,7 @@ void for_each_count(AnyState& state, Visit visit) {
   visit(state.ledger.next_id);
   for (auto& count : state.ledger.emitted) visit(count);
   for (auto& count : state.ledger.removed) visit(count);
+  for (auto& count : state.ledger.strayed) visit(count);
 }
 
 template <class Real>

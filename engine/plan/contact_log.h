@@ -61,7 +61,9 @@ struct ContactRecorder {
 
 class ContactLog {
  public:
-  explicit ContactLog(std::size_t solids) : solids_(solids) {}
+  /// `all`: else of solids that move alone, which is what does work.
+  explicit ContactLog(std::size_t solids, bool all = true) : solids_(solids), all_(all) {}
+  bool all() const { return all_; }
 
   /// Gives rows to the blocks that `near` says, of all blocks of the grid.
   template <class Near>
@@ -96,6 +98,7 @@ class ContactLog {
 
  private:
   std::size_t solids_;
+  bool all_;
   std::vector<std::int32_t> row_;  // per block; -1 where no solid is near
   std::vector<ContactSums> sums_;  // rows in the order of blocks
 };

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/plan/energy_alarm.h"
 #include "engine/plan/implicit_plan.h"
 #include "engine/plan/pass.h"
 #include "engine/plan/sleep.h"
@@ -77,6 +78,8 @@ struct StepPlan {
 
   std::optional<SleepRule> sleep;               ///< whether, and when, blocks sleep
   std::vector<Disturbance<Real>> disturbances;  ///< what wakes them from outside
+
+  std::optional<EnergyAlarm> energy;  ///< whether, and how, energy is watched
 
   /// How fast, in m/s, what is no particle moves at most between two times (s): it must not cross more cells in
   /// a step than particles may.

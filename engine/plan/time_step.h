@@ -19,6 +19,10 @@
 
 namespace repose {
 
+/// Steps of a frame that nobody waits for: a scene is refused whose limits alone would make so many, and a run
+/// ends in which some particle does.
+inline constexpr double kMostStepsByLimits = 1e10, kMostStepsBySpeed = 1e8;
+
 struct StepSize {
   double dt = 0.0;  ///< s
   Limit limit = Limit::kMaxStep;

@@ -20,8 +20,8 @@ enum class Advection {
   kBeforeFriction,  ///< v-bar
 };
 
-/// Explicit steps after which the velocity that particles have for themselves is measured anew, where its loss is
-/// a rate. Chosen for what it costs and what it loses, from the table of docs/math.md, section 47.
+/// Explicit steps after which the velocity that particles have for themselves is measured anew, where its loss
+/// is a rate. Chosen for what it costs and what it loses, from the table of docs/math.md, section 47.
 inline constexpr std::int64_t kStepsBetweenMeasures = 4;
 
 /// The stencil and the transfer of a scene.

@@ -1,22 +1,21 @@
 // Repose: expressions on muParser. Everything that muParser throws ends here.
 #include "engine/reading/expressions.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "engine/base/wording.h"
 
 namespace repose {
 
-Expressions::Expressions() : names_{"pi", "deg"} {
+Expressions::Expressions() {
   parser_.DefineConst("pi", std::numbers::pi);
   parser_.DefineConst("deg", std::numbers::pi / 180.0);
 }
 
 Result<void> Expressions::define(const std::string& name, double value) {
-  const bool taken = std::find(names_.begin(), names_.end(), name) != names_.end();
-  if (taken || parser_.GetFunDef().contains(name)) {
+  if (parser_.GetConst().contains(name) || parser_.GetFunDef().contains(name)) {
     return Error{ErrorKind::kBadScene, "already means something in expressions; choose another name", ""};
   }
   try {
@@ -25,11 +24,16 @@ Result<void> Expressions::define(const std::string& name, double value) {
     return Error{ErrorKind::kBadScene, "not a name for expressions; use letters, digits and _, a letter first",
                  ""};
   }
-  names_.push_back(name);
+  awaited_.erase(name);
   return {};
 }
 
+void Expressions::await(const std::string& name) {
+  awaited_.insert(name);
+}
+
 void Expressions::define_broken(const std::string& name) {
+  awaited_.erase(name);
   broken_.insert(name);
 }
 
@@ -55,11 +59,13 @@ Evaluation Expressions::refusal(const mu::ParserError& error) const {
     return {{}, "cannot be evaluated: " + message + "; expected for example \"= 2 * pi\"", ""};
   }
   const std::string name = error.GetToken();
-  if (broken_.contains(name)) return {{}, "", name};
-  std::vector<std::string> known = names_;
+  if (awaited_.contains(name)) return {{}, "", name};
+  if (broken_.contains(name)) return {{}, "", ""};
+  std::vector<std::string> known;
+  for (const auto& [constant, of] : parser_.GetConst()) known.push_back(constant);
   for (const auto& [function, callback] : parser_.GetFunDef()) known.push_back(function);
   const std::string best = nearest(name, known);
-  return {{}, "unknown name \"" + name + "\"; the nearest is \"" + best + "\"", name};
+  return {{}, "unknown name \"" + name + "\"; the nearest is \"" + best + "\"", ""};
 }
 
 }  // namespace repose

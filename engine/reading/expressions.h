@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "engine/base/result.h"
 
@@ -15,13 +14,16 @@ namespace repose {
 /// What came of an expression: a value, or the words of what is wrong with it.
 struct Evaluation {
   std::optional<double> value;
-  std::string error;    ///< empty beside no value: it rests on a parameter that was complained of already
-  std::string unknown;  ///< the name that nothing defines, if that is what is wrong
+  std::string error;    ///< empty beside no value: it rests on a name that is awaited or broken
+  std::string awaited;  ///< that name, where it is awaited
 };
 
 class Expressions {
  public:
   Expressions();
+
+  /// Says that `name` will be defined.
+  void await(const std::string& name);
 
   /// Makes `name` known; refuses what is no identifier and what already means something (pi, sin ...).
   Result<void> define(const std::string& name, double value);
@@ -39,8 +41,7 @@ class Expressions {
   Evaluation refusal(const mu::ParserError& error) const;
 
   mu::Parser parser_;
-  std::vector<std::string> names_;
-  std::set<std::string> broken_;
+  std::set<std::string> awaited_, broken_;
 };
 
 }  // namespace repose

@@ -16,6 +16,7 @@ void strip(Json::Value& root) {
     return;
   }
   root["time"].removeMember("frames");
+  root["time"].removeMember("energy_alarm");  // it changes no state
   if (root["time"].empty()) root.removeMember("time");
 }
 

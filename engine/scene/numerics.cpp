@@ -58,6 +58,9 @@ void describe_periodic(Fields& fields, GridDescription& grid) {
   }
 }
 
+constexpr Choice kAlarms[] = {{"off", "nobody looks"},
+                              {"warn", "the run says so, and goes on"},
+                              {"stop", "the run ends, with its state from the last frame"}};
 constexpr Choice kIntegrators[] = {
     {"explicit", "short steps, each cheap"},
     {"implicit", "backward Euler: long steps, each solved for (key 'implicit')"},
@@ -199,6 +202,8 @@ void describe(Fields& fields, TimeDescription& time) {
   share("sound", time.sound, "cells that a compression wave may cross in a step");
   share("isolated", time.isolated, "share of the stability limit of one particle alone");
   share("strain", time.strain, "largest velocity gradient times step");
+  fields.choice("energy_alarm", time.energy_alarm, kAlarms,
+                "where there is more energy than gravity, solids and sources can have given");
 }
 
 }  // namespace repose

@@ -53,6 +53,9 @@ enum class Integrator {
   kAuto,      ///< whichever should take less time (engine/compiler/integrator.h)
 };
 
+/// What happens where energy comes from nowhere.
+enum class AlarmChoice { kOff, kWarn, kStop };
+
 struct TimeDescription {
   Integrator integrator = Integrator::kExplicit;
   std::int64_t frames = 48;
@@ -64,6 +67,7 @@ struct TimeDescription {
   double sound = 0.5;     ///< cells that a compression wave may cross in a step
   double isolated = 0.9;  ///< share of the stability limit of one particle alone
   double strain = 0.5;    ///< largest velocity gradient times step
+  AlarmChoice energy_alarm = AlarmChoice::kWarn;
 };
 
 inline Clock clock_of(const TimeDescription& time) {

@@ -136,7 +136,13 @@ LedgerReport ledger_report(const Scene& scene, const State<Real>& state) {
       add(report.removed, k, state.ledger.removed[s * sets + k]);
     }
   }
-  for (std::size_t k = 0; k < sets; ++k) add(report.held, k, state.sets[k].count);
+  LedgerReport::Entry strayed{"edge of the lattice"};
+  for (std::size_t k = 0; k < sets; ++k) {
+    add(strayed, k, state.ledger.strayed[k]);
+    add(report.removed, k, state.ledger.strayed[k]);
+    add(report.held, k, state.sets[k].count);
+  }
+  if (strayed.particles > 0) report.sinks.push_back(strayed);
   return report;
 }
 

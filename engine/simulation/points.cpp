@@ -187,7 +187,7 @@ void put_positions(const State<Real>& state, const Source<Real>& source, PointCl
   for (std::size_t occupied = 0; set.count > 0 && occupied < occupied_blocks.size(); ++occupied) {
     const Index3 block = state.grid.occupied_coordinates(occupied);
     for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
-      const Vec3 x = state.world(block, set, p);
+      const Vec3 x = state.within_periods(state.world(block, set, p));
       cloud.position[source.row[p]] = {x[0], x[1], x[2]};
     }
   }

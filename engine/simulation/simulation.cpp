@@ -14,6 +14,7 @@
 #include "engine/simulation/memory.h"
 #include "engine/simulation/points.h"
 #include "engine/simulation/warnings.h"
+#include "engine/state/state_difference.h"
 #include "engine/state/state_hash.h"
 #include "engine/step/stepper.h"
 #include "kernels/pass/pass.h"
@@ -32,11 +33,10 @@ std::string describe_failure(const FailedParticle& particle, const StepReport& r
   char text[512];
   std::snprintf(text, sizeof text,
                 "physics gave out: particle %u of '%s' at (%.4g, %.4g, %.4g) m %s, even in a step of %.3g s "
-                "(velocity %.3g m/s, trial %.3g m/s, det(I + dt grad v) = %.3g); smaller time.sound or a finer "
-                "grid.spacing may help",
+                "(velocity %.3g m/s, trial %.3g m/s, det(I + dt grad v) = %.3g); %s",
                 particle.id, particle.set.c_str(), particle.position[0], particle.position[1],
                 particle.position[2], particle.reason.c_str(), report.dt, to_vec3(particle.velocity).norm(),
-                to_vec3(particle.trial_velocity).norm(), particle.determinant);
+                to_vec3(particle.trial_velocity).norm(), particle.determinant, particle.advice.c_str());
   return text;
 }
 
@@ -82,12 +82,17 @@ class SimulationOf final : public Simulation {
   Result<StepReport> step() override {
     auto report = try_step(std::numeric_limits<double>::infinity());
     if (!report) return report;
+    if (report->interrupted) {
+      stepper_.wish().take();
+      return report;
+    }
     FrameClock::advance_freely(state_.counters, report->dt);
-    watch_speed();
+    if (auto heeded = heed(*report); !heeded) return heeded.error();
     return report;
   }
 
   Result<FrameReport> advance_frame(const StepCallback& callback) override;
+  void interrupt() noexcept override { stepper_.wish().say(); }
 
   const Counters& counters() const override { return state_.counters; }
   std::size_t particles() const override { return state_.particles(); }
@@ -107,6 +112,13 @@ class SimulationOf final : public Simulation {
   }
   LedgerReport ledger() const override { return ledger_report(scene_, state_); }
   std::uint64_t hash() const override { return state_hash(state_); }
+  std::vector<ChannelHash> channel_hashes() const override { return repose::channel_hashes(state_); }
+  Result<std::optional<StateDifference>> difference(const Simulation& other) const override {
+    const auto* const same = dynamic_cast<const SimulationOf*>(&other);
+    if (same == nullptr || same->state_.sets.size() != state_.sets.size())
+      return Error{ErrorKind::kUsage, "has another precision, or other sets of particles", scene_.name};
+    return first_difference(state_, same->state_);
+  }
   MemoryUse memory() const override { return stepper_.memory(state_); }
   double writing_bytes() const override {
     return stepper_.plan().memory.writing(state_.particles(), state_.grid.size());
@@ -168,10 +180,23 @@ class SimulationOf final : public Simulation {
       StepReport report = stepper_.step(state_, remaining);
       failed_ = report.failed;
       if (report.error) return refuse(*report.error);
-      if (report.accepted) return report;
+      if (report.accepted || report.interrupted) return report;
       if (!report.failed) return Error{ErrorKind::kPhysics, describe_unsolved(report), scene_.name};
       return Error{ErrorKind::kPhysics, describe_failure(*report.failed, report), scene_.name};
     });
+  }
+
+  /// Of a step that was made: what it gives cause to say.
+  Result<void> heed(const StepReport& report) {
+    watch_speed();
+    if (!report.alarm) return {};
+    if (!stepper_.plan().energy->stops) {
+      warnings_.push_back(*report.alarm);
+      return {};
+    }
+    failed_ = fastest_particle(state_, "is the fastest");
+    failed_->advice = "smaller time.sound and time.strain, or grid.stencil quadratic, may help";
+    return Error{ErrorKind::kPhysics, *report.alarm, scene_.name};
   }
 
   void watch_speed() {
@@ -221,11 +246,15 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
   while (!clock_.frame_is_full(counters)) {
     const auto report = try_step(clock_.remaining(counters));
     if (!report) return report.error();
+    if (report->interrupted) break;
     clock_.advance(counters, report->dt);
     add_step(*report, frame);
-    watch_speed();
-    if (callback && !callback(*report, counters)) break;
+    const auto heeded = heed(*report);
+    const bool goes_on = !callback || callback(*report, counters);
+    if (!heeded) return heeded.error();
+    if (!goes_on || stepper_.wish().said()) break;
   }
+  stepper_.wish().take();
   if (clock_.frame_is_full(counters)) {
     clock_.end_frame(counters);
     if (auto ended = unless_memory_ends([&] { return stepper_.end_frame(state_); }); !ended)

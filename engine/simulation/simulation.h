@@ -25,7 +25,9 @@
 namespace repose {
 
 struct Scene;  // engine/scene/scene.h, for hosts that fill one by hand; engine/reading/reader.h for the others
-struct Solid;  // engine/effect/solid.h
+struct ChannelHash;      // engine/state/difference.h
+struct StateDifference;  // likewise
+struct Solid;            // engine/effect/solid.h
 
 struct SimulationOptions {
   int threads = 0;  ///< 0: as many as the machine has
@@ -53,6 +55,11 @@ class Simulation {
   /// used up; sound() tells whether the state can still be saved.
   virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
 
+  /// Leaves the step at hand, or the next one, as it was before it: advance_frame returns with its frame
+  /// unfinished, step with a report that was interrupted, and the next call goes on. May be called by any
+  /// thread and by signal handlers.
+  virtual void interrupt() noexcept = 0;
+
   /// Whether the state is that of the last accepted step; false when memory ran out in the midst of a change.
   virtual bool sound() const = 0;
 
@@ -65,6 +72,11 @@ class Simulation {
   virtual Diagnostics diagnose() = 0;
   virtual LedgerReport ledger() const = 0;
   virtual std::uint64_t hash() const = 0;
+  /// A hash for each channel of the particles.
+  virtual std::vector<ChannelHash> channel_hashes() const = 0;
+  /// The first number in which the state of another simulation of the same scene differs; nothing where no bit
+  /// does. Error 64: the other has another precision, or other sets.
+  virtual Result<std::optional<StateDifference>> difference(const Simulation& other) const = 0;
   /// What it takes now, and has made room for.
   virtual MemoryUse memory() const = 0;
   /// What writing a frame takes beside that, bytes, by what the scene's output asks for.

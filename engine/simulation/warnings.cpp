@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "engine/base/wording.h"
+#include "engine/effect/thin_solid.h"
 #include "engine/plan/time_step.h"
 #include "engine/simulation/diagnostics.h"
 
@@ -52,21 +54,6 @@ std::string inside_text(const ParticleSet<Real>& set, const Inside& inside, doub
                 static_cast<unsigned long long>(inside.count), set.count, inside.depth / spacing, inside.depth);
   return "bodies." + set.name + ": " + figures + " inside colliders." + inside.solid->name +
          "; solids do not push out what starts within them, so move one of the two";
-}
-
-/// Whether some point of a box of half diagonal `half` about x lies as deep in the solid as `depth` (m). Depth
-/// changes no faster than place, so most boxes are done with by one look.
-bool reaches_depth(const Solid& solid, const Vec3& x, const Vec3& half, double depth, double finest) {
-  const double here = -solid.distance(x);
-  if (here >= depth) return true;
-  if (here + half.norm() < depth || half.norm() < finest) return false;
-  int axis = 0;
-  half.maxCoeff(&axis);
-  Vec3 side = Vec3::Zero(), quarter = half;
-  quarter[axis] *= 0.5;
-  side[axis] = quarter[axis];
-  return reaches_depth(solid, x - side, quarter, depth, finest) ||
-         reaches_depth(solid, x + side, quarter, depth, finest);
 }
 
 template <class Real>
@@ -118,21 +105,18 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
 }
 
 std::vector<std::string> thin_solid_warnings(const std::vector<Solid>& solids, double spacing) {
-  constexpr double kLeastCells = 2.0;
   std::vector<std::string> warnings;
   for (const Solid& solid : solids) {
-    const Bounds bounds = solid.shape->bounds();
-    const bool endless = !bounds.lower.allFinite() || !bounds.upper.allFinite();
-    if (!solid.moves() || solid.hollow || endless) continue;
-    // A tenth of a cell is let pass: a wall of just two cells is meant well, and a mesh errs by as much.
-    const double depth = (0.5 * kLeastCells - 0.1) * spacing;
-    if (reaches_depth(solid, 0.5 * (bounds.lower + bounds.upper), 0.5 * (bounds.upper - bounds.lower), depth,
-                      0.05 * spacing))
-      continue;
-    warnings.push_back(
-        "colliders." + solid.name +
-        ": moves and is thinner than two cells, so that hardly a node lies within it and material "
-        "passes through; make it thicker or grid.spacing finer");
+    const std::string thin = "colliders." + solid.name + ": is thinner than two cells";
+    if (solid.thickened > 0.0) {
+      warnings.push_back(thin + ", and nodes would not see it: it acts as if it were " +
+                         number_text(solid.thickened) +
+                         " m thicker to either side; make it thicker, or grid.spacing finer");
+    } else if (thin_in_places(solid, spacing)) {
+      warnings.push_back(thin +
+                         " in places, where material may pass through it; make it thicker there, or "
+                         "grid.spacing finer");
+    }
   }
   return warnings;
 }

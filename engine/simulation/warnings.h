@@ -17,8 +17,8 @@ namespace repose {
 /// Materials that cannot do what they are for: sand whose cone is too steep to yield in plane strain.
 std::vector<std::string> scene_warnings(const Scene& scene);
 
-/// One for each moving solid that is thinner than two cells: no node may lie within it, so material passes
-/// through.
+/// One for each solid that is thinner than what nodes see: how it is thickened, or that material may pass it
+/// where it is thin in places.
 std::vector<std::string> thin_solid_warnings(const std::vector<Solid>& solids, double spacing);
 
 /// One for each body that has particles inside solids by more than half a cell: how many, how deep, in which.

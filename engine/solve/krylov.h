@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -78,6 +79,7 @@ struct Stop {
   int iterations = 100;   ///< at most
   bool history = false;   ///< whether to report |r|_P of every iteration; allocates
   double enough = 0.0;    ///< share of the start at which a breakdown needs no lower rung of a ladder
+  std::function<bool()> interrupted{};  ///< asked in every iteration: whether to give up
 };
 
 /// How far down the ladder of engine/solve/linear_solve.h a solve went. A solver by itself is on the first two.
@@ -128,6 +130,7 @@ class ResidualWatch {
     norm_ = rr < 0.0 ? 0.0 : std::sqrt(rr);
     if (stop_.history) report_.history.push_back(norm_);
     if (!std::isfinite(norm_)) end(SolveStatus::kNotFinite);
+    if (stop_.interrupted && stop_.interrupted()) end(SolveStatus::kInterrupted);
   }
 
   /// Whether an iteration cannot go on; takes z^T w and w^T P w, with z = P r and w = A z, before x changes.

@@ -67,6 +67,10 @@ class LinearSolve {
            report.final_norm > stop.enough * report.initial_norm;
   }
 
+  static bool hopeless(const SolveReport& report) {
+    return report.status == SolveStatus::kNotFinite || report.status == SolveStatus::kInterrupted;
+  }
+
   static void follow(SolveReport& report, SolveRung rung, SolveReport next) {
     report.status = next.status;
     report.rung = rung;
@@ -83,13 +87,13 @@ class LinearSolve {
       system.shift(shift);
       follow(report, SolveRung::kShifted, first_.solve(system, b, x, stop));
       report.shift = shift;
-      if (report.converged() || report.status == SolveStatus::kNotFinite) break;
+      if (report.converged() || hopeless(report)) break;
     }
     system.shift(0.0);
     if (report.converged()) return;
     report.shift = 0.0;
     report.final_norm = report.initial_norm;
-    if (report.status != SolveStatus::kNotFinite) report.status = SolveStatus::kBrokeDown;
+    if (!hopeless(report)) report.status = SolveStatus::kBrokeDown;
   }
 
   Shifts shifts_;

@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -39,6 +40,7 @@ namespace repose {
 struct NewtonStop {
   double tolerance = 0.0;  ///< of |r|, over the problem's scale
   int iterations = 40;
+  std::function<bool()> interrupted{};  ///< asked in every iteration: whether to give up
 };
 
 template <class Problem>
@@ -59,11 +61,13 @@ class Newton {
     // A guess may be right but for contacts that pull.
     if (report_.last <= tolerance() && !change_contacts()) return end(NewtonEnd::kUndefined);
     while (report_.history.push_back(report_.last), report_.last > tolerance()) {
+      if (interrupted()) return end(NewtonEnd::kInterrupted);
       if (report_.iterations == stop_.iterations) return end(NewtonEnd::kIterations);
       ++report_.iterations;
       const std::optional<NewtonEnd> failed = !direction() ? NewtonEnd::kUnsolved
                                               : !search()  ? NewtonEnd::kNoDescent
                                                            : std::optional<NewtonEnd>{};
+      if (interrupted()) return end(NewtonEnd::kInterrupted);
       if (failed && !near_) return end(*failed);
       if (failed) problem_.evaluate(v_);  // the last was a length that was refused
       if (!failed && early() && !change_contacts()) return end(NewtonEnd::kUndefined);
@@ -80,6 +84,7 @@ class Newton {
   static constexpr double kNearly = 10.0;   // tolerances
   static constexpr int kLengths = 12, kLengthsNear = 3;
 
+  bool interrupted() const { return stop_.interrupted && stop_.interrupted(); }
   bool early() const { return 2 * report_.iterations <= stop_.iterations; }
 
   NewtonReport end(NewtonEnd how) {

@@ -17,8 +17,12 @@ using Inner = openvdb::tree::InternalNode<openvdb::tree::InternalNode<Leaf, 4>, 
 using MaskTree = openvdb::tree::Tree<openvdb::tree::RootNode<Inner>>;
 static_assert(Leaf::DIM == kBlockSide);
 
+/// Beyond the last block of the lattice comes the first.
 openvdb::Coord first_node(const Index3& block) {
-  return {block[0] * kBlockSide, block[1] * kBlockSide, block[2] * kBlockSide};
+  const auto cell = [](std::int32_t b) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(b) * std::uint32_t{kBlockSide});
+  };
+  return {cell(block[0]), cell(block[1]), cell(block[2])};
 }
 
 Index3 block_of(const openvdb::Coord& node) {
@@ -93,6 +97,7 @@ void BlockGrid::build(std::span<const Index3> occupied_blocks, const Topology& t
   for (const Index3& occupied : occupied_blocks)
     occupied_of_block_[static_cast<std::size_t>(find(topology.wrap(occupied)))] = 0;
   occupied_.clear();
+  reaches_edge_ = false;
   neighbours_.clear();
   for (auto& colour : colours_) colour.clear();
   for (std::size_t block = 0; block < blocks_.size(); ++block) {
@@ -103,6 +108,7 @@ void BlockGrid::build(std::span<const Index3> occupied_blocks, const Topology& t
     neighbours_.resize(neighbours_.size() + kNeighbours, -1);
     std::int32_t* table = &neighbours_[neighbours_.size() - kNeighbours];
     const Index3& at = blocks_[block];
+    reaches_edge_ = reaches_edge_ || at_edge_of_lattice(at);
     for_each_neighbour(at, topology, [&](int k, const Index3& neighbour) { table[k] = find(neighbour); });
     colours_[static_cast<std::size_t>((at[0] & 1) * 4 + (at[1] & 1) * 2 + (at[2] & 1))].push_back(occupied);
   }

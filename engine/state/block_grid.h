@@ -3,6 +3,7 @@
 // 2014). Blocks come and go with the material, in any coordinate, without a bounding box.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,10 @@ class BlockGrid {
   /// Makes the blocks that hold particles, and those around them that they can reach. `occupied blocks` may
   /// repeat.
   void build(std::span<const Index3> occupied_blocks, const Topology& topology);
+
+  /// Whether a block that holds particles is the last of the lattice along an axis: cells have 32 bits, and
+  /// beyond them are those of the other end.
+  bool reaches_edge() const { return reaches_edge_; }
 
   /// All blocks of nodes, in leaf order.
   std::span<const Index3> blocks() const { return blocks_; }
@@ -81,7 +86,15 @@ class BlockGrid {
   std::vector<std::int32_t> occupied_of_block_;
   std::vector<std::int32_t> neighbours_;
   std::array<std::vector<std::int32_t>, 8> colours_;
+  bool reaches_edge_ = false;
 };
+
+/// Blocks of the lattice along an axis: [-kLatticeHalf, kLatticeHalf).
+inline constexpr std::int32_t kLatticeHalf = 1 << 29;
+inline bool at_edge_of_lattice(const Index3& block) {
+  return std::any_of(block.begin(), block.end(),
+                     [](std::int32_t b) { return b <= -kLatticeHalf || b >= kLatticeHalf - 1; });
+}
 
 /// floor(a / b) for b > 0.
 constexpr std::int32_t floor_divide(std::int32_t a, std::int32_t b) {

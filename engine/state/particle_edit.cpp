@@ -219,9 +219,23 @@ void find_blocks(ParticleSet<Real>& set, const Topology& topology, const Ownersh
   }
 }
 
+template <class Real>
+void remove_strays(State<Real>& state, ParticleEdit<Real>& edit) {
+  for (std::size_t occupied = 0; occupied < state.grid.occupied_blocks().size(); ++occupied) {
+    if (!at_edge_of_lattice(state.grid.occupied_coordinates(occupied))) continue;
+    for (std::size_t k = 0; k < state.sets.size(); ++k) {
+      for (std::uint32_t p = state.sets[k].begin[occupied]; p < state.sets[k].begin[occupied + 1]; ++p) {
+        edit.sets[k].removed.push_back(p);
+        ++state.ledger.strayed[k];
+      }
+    }
+  }
+}
+
 #define REPOSE_INSTANTIATE(Real)                                                        \
   template struct ParticleEdit<Real>;                                                   \
   template Result<bool> apply_edit(ParticleEdit<Real>, State<Real>&, const Ownership&); \
+  template void remove_strays(State<Real>&, ParticleEdit<Real>&);                       \
   template void find_blocks(ParticleSet<Real>&, const Topology&, const Ownership&, std::vector<Index3>&);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

@@ -42,6 +42,10 @@ struct ParticleEdit {
 template <class Real>
 Result<bool> apply_edit(ParticleEdit<Real> edit, State<Real>& state, const Ownership& ownership);
 
+/// What has come to the edge of the lattice goes, and is counted.
+template <class Real>
+void remove_strays(State<Real>& state, ParticleEdit<Real>& edit);
+
 /// What place_in_blocks and edits share: turns cells of the lattice into the blocks that own the particles, in
 /// place, and positions in a cell into positions in that block.
 template <class Real>

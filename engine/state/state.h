@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Ledger {
   std::uint64_t next_id = 0;           ///< also how many ids have been given
   std::vector<std::uint64_t> emitted;  ///< per emitter of the scene
   std::vector<std::uint64_t> removed;  ///< per sink of the scene and set: [sink * sets + set]
+  std::vector<std::uint64_t> strayed;  ///< per set: what has come to the edge of the lattice
 
   /// Whether particles may begin or end at all.
   bool open() const { return !emitted.empty() || !removed.empty(); }
@@ -59,6 +61,20 @@ struct State {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t cells = std::int64_t{block[axis]} * kBlockSide - origin_cells[axis];
       x[static_cast<int>(axis)] = (static_cast<double>(cells) + offset[axis]) * spacing;
+    }
+    return x;
+  }
+
+  /// The image of a place that lies within the stretch of each axis that repeats, m. Particles stay with their
+  /// block until they are sorted, and so may lie up to a cell beyond.
+  Vec3 within_periods(Vec3 x) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::size_t>(axis);
+      if (topology.period[at] == 0) continue;
+      const double block = kBlockSide * spacing, length = block * topology.period[at];
+      const double lower = block * topology.period_start[at] - spacing * origin_cells[at];
+      x[axis] -= length * std::floor((x[axis] - lower) / length);
+      if (!(x[axis] < lower + length)) x[axis] = lower;  // by rounding
     }
     return x;
   }

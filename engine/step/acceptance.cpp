@@ -26,6 +26,8 @@ std::string unsolved_text(const ImplicitReport& report) {
       return std::string("the linear solver gave up (") + status_name(report.linear) + ")";
     case NewtonEnd::kUndefined:
       return "the residual has no value where it starts, or where contacts put it";
+    case NewtonEnd::kInterrupted:
+      return "it was interrupted";
   }
   return "";
 }
@@ -42,26 +44,31 @@ void Acceptance<Real>::bound(const BlockSweep<Real>& sweep, std::size_t block) {
   sweep.kernels().node.bound(moving_.of_block(sweep.state(), block), bounds_[block]);
 }
 
-/// The particle for whose sake no step is short enough.
+/// By its velocity and what its C tells nodes a cell away; one that is not a number comes first.
 template <class Real>
-FailedParticle fastest_particle(const State<Real>& state) {
+FailedParticle fastest_particle(const State<Real>& state, std::string what) {
   FailedParticle failed;
   double most = -1.0;
   for (const auto& set : state.sets) {
-    for (std::size_t p = 0; p < set.count; ++p) {
-      const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
-      double size = v.squaredNorm();
-      for (const auto& c : set.affine)
-        size += !set.keeps_affine ? 0.0 : double(c[p]) * double(c[p]) * state.spacing * state.spacing;
-      if (size <= most) continue;
-      most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
-      failed.set = set.name;
-      failed.id = set.id[p];
-      failed.velocity = failed.trial_velocity = to_triple(v);
+    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
+        const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
+        double size = v.squaredNorm();
+        for (const auto& c : set.affine)
+          size += !set.keeps_affine ? 0.0 : double(c[p]) * double(c[p]) * state.spacing * state.spacing;
+        if (size <= most) continue;
+        most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
+        failed.set = set.name;
+        failed.id = set.id[p];
+        failed.block = state.grid.occupied_coordinates(occupied);
+        failed.position = to_triple(state.world(failed.block, set, p));
+        failed.velocity = failed.trial_velocity = to_triple(v);
+      }
     }
   }
   failed.determinant = 1.0;
-  failed.reason = "is too fast for any step";
+  failed.reason = std::move(what);
+  failed.advice = "look for a solid, an emitter or a force that drives it, and for a floor that is missing";
   return failed;
 }
 
@@ -155,12 +162,13 @@ FailedParticle Acceptance<Real>::failure(const OccupiedBlock<Real>& block, const
   failed.reason = !finite                     ? "is not finite"
                   : failed.determinant <= 0.0 ? "would be turned inside out"
                                               : "would move over a cell";
+  failed.advice = "smaller time.sound or a finer grid.spacing may help";
   return failed;
 }
 
 template class Acceptance<float>;
 template class Acceptance<double>;
-template FailedParticle fastest_particle(const State<float>&);
-template FailedParticle fastest_particle(const State<double>&);
+template FailedParticle fastest_particle(const State<float>&, std::string);
+template FailedParticle fastest_particle(const State<double>&, std::string);
 
 }  // namespace repose

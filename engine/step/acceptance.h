@@ -44,8 +44,8 @@ class Acceptance {
   std::vector<std::optional<FailedParticle>> found_;  // per suspect
 };
 
-/// The particle for whose sake no step is short enough.
+/// The particle for whose sake no step is short enough; `what` it is, such as "is too fast for any step".
 template <class Real>
-FailedParticle fastest_particle(const State<Real>& state);
+FailedParticle fastest_particle(const State<Real>& state, std::string what);
 
 }  // namespace repose

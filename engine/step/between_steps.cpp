@@ -34,17 +34,24 @@ void BetweenSteps<Real>::follow_topology(State<Real>& state) {
 /// Returns whether particles have begun or ended.
 template <class Real>
 Result<bool> BetweenSteps<Real>::carry_out_events(State<Real>& state, Moment moment) {
-  if (plan_.events.empty()) return false;
+  const bool strays = state.grid.reaches_edge();
+  if (plan_.events.empty() && !strays) return false;
   const PhaseTimer timer(profile_, Phase::kSort);
   std::optional<ParticleEdit<Real>> edit;
   Ledger ledger;
   const double unseen_motion = state.counters.unseen_motion;
+  const auto make_edit = [&] {
+    if (edit) return;
+    edit.emplace(state, threads_);
+    ledger = state.ledger;
+  };
+  if (strays) {  // alone: nobody may remove a particle twice
+    make_edit();
+    remove_strays(state, *edit);
+  }
   for (const auto& pass : plan_.events) {
-    if (!pass.due(state, moment)) continue;
-    if (!edit) {
-      edit.emplace(state, threads_);
-      ledger = state.ledger;
-    }
+    if (strays || !pass.due(state, moment)) continue;
+    make_edit();
     pass.run(state, *edit);
   }
   if (!edit || edit->empty()) return false;

@@ -23,15 +23,24 @@ struct FailedParticle {
   Triple trial_velocity{};   ///< m/s, that the step would have moved it with
   double determinant = 0.0;  ///< det(I + dt grad v)
   std::string reason;        ///< what would happen to it, such as "would move over a cell"
+  std::string advice;        ///< what may help
+};
+
+/// Energy of all matter, J, and what had come into it since the run, or what it was resumed from, began.
+struct EnergyLook {
+  double kinetic = 0.0, affine = 0.0, elastic = 0.0, potential = 0.0, given = 0.0;
 };
 
 struct StepReport {
   bool accepted = false;
-  double dt = 0.0;  ///< s; of the step made, or of the last one refused
+  bool interrupted = false;  ///< it was left because somebody wished so; nothing has changed
+  double dt = 0.0;           ///< s; of the step made, or of the last one refused
   Limit limit = Limit::kMaxStep;
   int redone = 0;                          ///< how often it was refused
   std::string first_refusal;               ///< why, the first time; empty where it was not
   std::optional<FailedParticle> failed;    ///< of the last refusal
+  std::optional<EnergyLook> energy;        ///< after steps in which somebody looked
+  std::optional<std::string> alarm;        ///< energy that comes from nowhere, in words; told once
   std::optional<Error> error;              ///< why no step was tried: an event failed, or memory would not do
   std::optional<ImplicitReport> implicit;  ///< of the last try, where steps are implicit
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/base/memory.h"
 #include "engine/plan/time_step.h"
@@ -13,6 +14,16 @@ constexpr int kMostHalvings = 3;
 
 /// A step shorter than this share of the scene's longest would never end: nothing real moves so fast.
 constexpr double kLeastShare = 1e-12;
+
+/// Why steps of this size would go on for ever; empty where they will not.
+std::string endless(const StepSize& size, double remaining, double longest) {
+  if (!(size.dt >= kLeastShare * longest)) return "is too fast for any step";  // or is not a number
+  if (!std::isfinite(remaining) || remaining / size.dt <= kMostStepsBySpeed) return "";
+  char text[96];
+  std::snprintf(text, sizeof text, "is so fast that the rest of the frame would take %.2g steps",
+                remaining / size.dt);
+  return text;
+}
 
 /// The plan with the room that the solve needs.
 template <class Real>
@@ -31,7 +42,8 @@ Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
       between_(plan_, threads_, active_, profile_),
       moving_(plan_),
       acceptance_(plan_),
-      sweep_(plan_, threads_, active_.set()),
+      energy_(plan_),
+      sweep_(plan_, threads_, active_.set(), wish_),
       arena_(plan_.scratch.place_arena(kArena)),
       before_forces_(plan_.transfer.figures().keeps_velocity ? plan_.scratch.place_arena(kArenaBeforeForces)
                                                              : 0) {
@@ -53,17 +65,22 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   const StepSize size = next_step(plan_, state.spacing, state.counters, remaining);
   report.limit = size.limit;
   report.dt = size.dt;
-  if (!(size.dt >= kLeastShare * plan_.limits.max_step)) {  // also when a speed is not finite
-    report.failed = fastest_particle(state);
+  if (const std::string why = endless(size, remaining, plan_.limits.max_step); !why.empty()) {
+    report.failed = fastest_particle(state, why);
     return report;
   }
+  energy_.begin(state, threads_);
   active_.begin_step(state, state.counters.time + size.dt);
   for (; report.redone <= kMostHalvings; ++report.redone) {
     report.dt = std::ldexp(size.dt, -report.redone);
     sweep_.begin(state, static_cast<Real>(report.dt));
-    if (!try_step(report)) continue;
+    const bool acceptable = try_step(report);
+    report.interrupted = sweep_.interrupted() && !acceptable;
+    if (report.interrupted) break;
+    if (!acceptable) continue;
     gather();
     finish(report.dt);
+    energy_.after_step(state, threads_, report.dt >= remaining * (1.0 - 1e-9), report);
     report.accepted = true;
     break;
   }
@@ -78,6 +95,7 @@ bool Stepper<Real>::try_step(StepReport& report) {
   update_nodes();
   report.failed.reset();
   if (implicit_ && !solve(report)) return false;
+  if (sweep_.interrupted()) return false;  // what was summed until here may lack colours
   active_.wake_margin(sweep_);
   const PhaseTimer timer(profile_, Phase::kAcceptance);
   report.failed = acceptance_.check(sweep_);
@@ -264,6 +282,7 @@ void Stepper<Real>::follow_topology(State<Real>& state) {
 template <class Real>
 Result<void> Stepper<Real>::follow(State<Real>& state) {
   active_.forget();
+  energy_.forget();
   if (implicit_) implicit_->forget();
   if (const auto error = outgrown(state)) return *error;
   follow_topology(state);
@@ -287,7 +306,7 @@ template <class Real>
 MemoryUse Stepper<Real>::memory(const State<Real>& state) const {
   MemoryUse use;
   use.particle_bytes = state.particle_bytes();
-  use.sort_bytes = between_.bytes() + active_.bytes() + acceptance_.bytes() + sweep_.bytes() +
+  use.sort_bytes = between_.bytes() + active_.bytes() + acceptance_.bytes() + energy_.bytes() + sweep_.bytes() +
                    motion_.capacity() * sizeof(Motion<Real>) + segments_.capacity() * sizeof(std::size_t);
   use.scratch_bytes = between_.scratch_bytes() + sweep_.scratch_bytes();
   use.grid_bytes = state.grid_bytes();

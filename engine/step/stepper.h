@@ -7,6 +7,7 @@
 #include "engine/implicit/implicit_step.h"
 #include "engine/step/acceptance.h"
 #include "engine/step/between_steps.h"
+#include "engine/step/energy_watch.h"
 #include "engine/step/memory_use.h"
 
 namespace repose {
@@ -42,6 +43,8 @@ class Stepper {
   /// Carries out the events that are due, then brings the order up to date if there were any; a step does so by
   /// itself. Error 78: no ids are left.
   Result<void> end_frame(State<Real>& state);
+  /// Said by any thread, it leaves the step at hand, and no particle has changed.
+  StopWish& wish() { return wish_; }
 
  private:
   struct Count {
@@ -62,12 +65,14 @@ class Stepper {
   void count_segments(Counters& counters) const;
 
   StepPlan<Real> plan_;
+  StopWish wish_;
   Threads threads_;
   Profile profile_;
   ActiveBlocks<Real> active_;
   BetweenSteps<Real> between_;
   MovingNodes<Real> moving_;
   Acceptance<Real> acceptance_;
+  EnergyWatch<Real> energy_;
   BlockSweep<Real> sweep_;  // after all that ask the plan for scratch
   std::optional<ImplicitStep<Real>> implicit_;
   std::size_t arena_, before_forces_;  // in scratch

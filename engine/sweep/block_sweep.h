@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/base/stop_wish.h"
 #include "engine/plan/step_plan.h"
 #include "engine/sweep/active_set.h"
 #include "kernels/pass/pass.h"
@@ -82,8 +83,8 @@ template <class Real>
 class BlockSweep {
  public:
   /// Scratch is made for the plan as it is now.
-  BlockSweep(const StepPlan<Real>& plan, Threads& threads, const ActiveSet& active)
-      : plan_(plan), threads_(threads), active_(active) {
+  BlockSweep(const StepPlan<Real>& plan, Threads& threads, const ActiveSet& active, const StopWish& wish)
+      : plan_(plan), threads_(threads), active_(active), wish_(wish) {
     for (int thread = 0; thread < threads.count(); ++thread) scratch_.emplace_back(plan.scratch);
   }
 
@@ -123,10 +124,16 @@ class BlockSweep {
     return sums;
   }
 
-  /// Calls body(OccupiedBlock&) for the occupied blocks that tell the nodes, colour by colour.
+  /// Whether somebody wishes that the step be left.
+  bool interrupted() const { return wish_.said(); }
+
+  /// Calls body(OccupiedBlock&) for the occupied blocks that tell the nodes, colour by colour. Where the step is
+  /// to be left, colours are left out; whoever goes on with the sums must ask first.
   template <class Body>
   void over_scattering(Body body) {
-    for (const auto& occupied : active_.scatter) over(occupied, body);
+    for (const auto& occupied : active_.scatter) {
+      if (!interrupted()) over(occupied, body);
+    }
   }
   /// The same for those whose particles move, in any order: they must not write to nodes.
   template <class Body>
@@ -160,6 +167,7 @@ class BlockSweep {
   const StepPlan<Real>& plan_;
   Threads& threads_;
   const ActiveSet& active_;
+  const StopWish& wish_;
   std::vector<Scratch<Real>> scratch_;  // per thread
   std::vector<double> partial_;         // per block
   State<Real>* state_ = nullptr;

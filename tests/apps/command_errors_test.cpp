@@ -5,6 +5,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <filesystem>
+
 #include "tests/apps/command_rig.h"
 
 namespace repose {
@@ -202,9 +204,29 @@ TEST_F(CommandErrors, PhysicsThatGivesOut_NamesTheParticleAndLeavesABundle) {
   EXPECT_NE(failure["particle"]["reason"].asString(), "");
   EXPECT_EQ(failure["particle"]["position"].size(), 3u);
   EXPECT_THAT(finished.err, HasSubstr("particle " + failure["particle"]["id"].asString() + " of"));
+  ASSERT_GE(failure["neighbours"].size(), 2u);
+  EXPECT_EQ(failure["neighbours"][0]["id"], failure["particle"]["id"]) << "the nearest to the place";
+  EXPECT_EQ(failure["neighbours"][0]["elastic_strain"].size(), 6u);
+  EXPECT_GT(std::filesystem::file_size(path("out/diagnostics/place.png")), 1000u);
   EXPECT_EQ(read_json(path("out/run.json"))["end"], failure["error"]);
   EXPECT_EQ(repose({"info", path("out/diagnostics/last_good.checkpoint")}).code, 0);
   EXPECT_EQ(repose({"check", path("out/diagnostics/scene.json")}).code, 0);
+}
+
+TEST_F(CommandErrors, RunThatEndsByItsAlarm_TellsItsLastSteps) {
+  // No step is stable with this stencil for particles that stand alone.
+  const Finished finished =
+      repose({"run", tiny_scene(), "--out", path("out"), "--quiet", "--set", "grid.stencil=linear", "--set",
+              R"(time={"frames_per_second": 2, "energy_alarm": "stop"})"});
+  ASSERT_EQ(finished.code, 70) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("energy comes from nowhere"));
+  const Json::Value steps = read_json(path("out/diagnostics/failure.json"))["last_steps"];
+  ASSERT_EQ(steps.size(), 50u);
+  EXPECT_EQ(steps[49]["step"].asInt(), steps[0]["step"].asInt() + 49);
+  EXPECT_GT(steps[49]["dt"].asDouble(), 0.0);
+  EXPECT_TRUE(steps[49].isMember("energy")) << "the look that raised it";
+  EXPECT_GT(std::filesystem::file_size(path("out/diagnostics/place.png")), 1000u)
+      << "about the fastest particle";
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ TYPED_TEST(Checkpoint, OtherScene_NamesBoth) {
 
 TYPED_TEST(Checkpoint, WhereParticlesBeginAndEnd_OtherCountsAndTheLedgerComeBack) {
   State<TypeParam> saved = make_state<TypeParam>(true);
-  saved.ledger = {kParticles, 991, {17, 24}, {1, 2, 3, 4}};
+  saved.ledger = {kParticles, 991, {17, 24}, {1, 2, 3, 4}, {5, 6}};
   this->save(saved);
   State<TypeParam> fresh;  // as compiled: an empty set, and a longer one
   fresh.tallies.assign(3, 0.0);
@@ -214,7 +214,7 @@ TYPED_TEST(Checkpoint, WhereParticlesBeginAndEnd_OtherCountsAndTheLedgerComeBack
   fresh.sets.resize(2);
   for (const char* name : {"gained", "age"}) fresh.sets[1].extra.push_back({name, {}});
   fresh.sets[1].allocate(3 * kParticles);
-  fresh.ledger = {0, 0, {0, 0}, {0, 0, 0, 0}};
+  fresh.ledger = {0, 0, {0, 0}, {0, 0, 0, 0}, {0, 0}};
   const auto loaded = load_checkpoint(this->path(), "0123456789abcdef", fresh);
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(state_hash(fresh), state_hash(saved));
@@ -223,6 +223,7 @@ TYPED_TEST(Checkpoint, WhereParticlesBeginAndEnd_OtherCountsAndTheLedgerComeBack
   EXPECT_EQ(fresh.ledger.next_id, 991u);
   EXPECT_EQ(fresh.ledger.emitted, saved.ledger.emitted);
   EXPECT_EQ(fresh.ledger.removed, saved.ledger.removed);
+  EXPECT_EQ(fresh.ledger.strayed, saved.ledger.strayed);
   EXPECT_EQ(fresh.counters.unseen_motion, saved.counters.unseen_motion);
 }
 

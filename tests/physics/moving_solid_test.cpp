@@ -209,7 +209,7 @@ TEST(MovingSolid, ThinOne_IsWarnedOf) {
     return simulation->warnings();
   };
   ASSERT_EQ(warnings(0.015).size(), 1u);
-  EXPECT_NE(warnings(0.015)[0].find("colliders.piston: moves and is thinner than two cells"),
+  EXPECT_NE(warnings(0.015)[0].find("colliders.piston: is thinner than two cells, and nodes would not see it"),
             std::string::npos);
   EXPECT_TRUE(warnings(0.02).empty());
 }

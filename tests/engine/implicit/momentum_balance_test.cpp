@@ -106,7 +106,8 @@ class Balance {
   CompiledScene<double> compiled_;
   Threads threads_{1};
   ActiveBlocks<double> active_{compiled_.plan};
-  BlockSweep<double> blocks_{compiled_.plan, threads_, active_.set()};
+  StopWish wish_;
+  BlockSweep<double> blocks_{compiled_.plan, threads_, active_.set(), wish_};
   ParticleSweep<double> sweep_{blocks_};
   ContactSet<double> contacts_;
   TangentSystem<double> system_{sweep_, contacts_, Preconditioner::kMass};

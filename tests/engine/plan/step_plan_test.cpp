@@ -299,7 +299,7 @@ TEST(CompiledPlan, Pin_IsOneOrderPassAndOneNodePassBeforeSolids) {
 TEST(CompiledPlan, ProbeOfFlow_CountsAroundTheMotion) {
   const Names without = compile({}), with = compile({R"json(probes=[{"name": "door", "type": "flow"}])json"});
   EXPECT_THAT(with.order, ElementsAre("blocks near planes of flow"));
-  EXPECT_THAT(with.gather, ElementsAre(ElementsAre("gather", "sides of planes", "advance", "count flow",
+  EXPECT_THAT(with.gather, ElementsAre(ElementsAre("gather", "places before motion", "advance", "count flow",
                                                    "trial strain", "return map")));
   EXPECT_THAT(with.measures, ElementsAre("probe door"));
   EXPECT_EQ(with.nodes, without.nodes);
