@@ -1,32 +1,81 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the tests.
-#   bash tests/run.sh               every test but the long ones
-#   bash tests/run.sh --all         the long ones too
-#   bash tests/run.sh --build-only  stops after the build
+#   bash tests/run.sh                      every test but the long ones
+#   bash tests/run.sh --all [PART]         the long ones too: all of them, or one part of them alone:
+#                                          stability, sanitizers, consumers, fuzz, rest
+#   bash tests/run.sh --stability [--page FILE]
+#                                          the battery of hard cases as a table, and as a page of Markdown
+#   bash tests/run.sh --build-only         stops after the build
 # REPOSE_PRESET chooses the preset (default: release).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-build_only=false all=false
-for word in "$@"; do
-  case "$word" in
+usage() { sed -n '2,9s/^# *//p' "$0" >&2; exit 64; }
+
+build_only=false all=false stability=false part= page=
+while [ $# -gt 0 ]; do
+  case "$1" in
     --build-only) build_only=true ;;
-    --all) all=true ;;
-    *) echo "usage: bash tests/run.sh [--build-only] [--all]" >&2; exit 64 ;;
+    --all)
+      all=true
+      case "${2:-}" in
+        stability | sanitizers | consumers | fuzz | rest) part=$2; shift ;;
+        "" | --*) ;;
+        *) usage ;;
+      esac ;;
+    --stability) stability=true ;;
+    --page) [ $# -gt 1 ] || usage; page=$2; shift ;;
+    *) usage ;;
   esac
+  shift
 done
+[ -z "$page" ] || $stability || usage
 
 packages=--tests
 $all && packages=--all
 bash cmake/packages.sh $packages
 preset=${REPOSE_PRESET:-release}
 jobs=$(nproc)
-cmake --preset "$preset" -DREPOSE_TESTS=ON -DREPOSE_BENCHMARKS=ON >"/tmp/repose-configure-$$.log" 2>&1 || { cat "/tmp/repose-configure-$$.log"; exit 1; }
-rm -f "/tmp/repose-configure-$$.log"
-cmake --build "build/$preset" -j "$jobs"
+
+build() {  # PRESET
+  local log
+  log=$(mktemp)
+  cmake --preset "$1" -DREPOSE_TESTS=ON -DREPOSE_BENCHMARKS=ON >"$log" 2>&1 || { cat "$log"; rm -f "$log"; exit 1; }
+  rm -f "$log"
+  cmake --build "build/$1" -j "$jobs"
+}
+
+run() {  # PRESET, then what chooses tests
+  local in=$1
+  shift
+  ctest --test-dir "build/$in" --output-on-failure -j "$jobs" "$@"
+}
+
+# Address, undefined behaviour and threads. The thread sanitizer is for what threads share: kernels, order, steps.
+sanitizers() {
+  build asan
+  run asan -LE long
+  build tsan
+  run tsan -L unit -R 'Kernel|Scatter|Gather|BlockSort|State|ParticleEdit|Stepper|StepPlan|Determinism'
+}
+
+if [ "$part" = sanitizers ]; then
+  sanitizers
+  exit
+fi
+
+build "$preset"
 $build_only && exit 0
 
+if $stability; then
+  python3 tests/stability/table.py "build/$preset" ${page:+--page "$page"}
+  exit
+fi
 # Physics tests use every core by themselves: they run one at a time, the rest side by side.
-labels=(-LE long)
-$all && labels=()
-ctest --test-dir "build/$preset" --output-on-failure -j "$jobs" "${labels[@]}"
+case "$part" in
+  "") if $all; then run "$preset"; sanitizers; else run "$preset" -LE long; fi ;;
+  stability) run "$preset" -L stability ;;
+  consumers) run "$preset" -L consumers ;;
+  fuzz) run "$preset" -L fuzz ;;
+  rest) run "$preset" -L long -LE 'stability|consumers|fuzz' ;;
+esac
