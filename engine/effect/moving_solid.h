@@ -27,8 +27,8 @@ class MovingSolid {
   MovingSolid(const Solid& solid, std::size_t index);
 
   std::size_t index() const { return index_; }
-  /// Whether it stands still in the step.
-  bool stands() const { return deforms() ? ways_per_second_ == 0.0 : still_; }
+  /// Whether it never moves, though it has a motion.
+  bool stands() const { return stands_; }
   bool deforms() const { return solid_.sequence != nullptr; }
 
   /// Blocks are listed as it stands at a time (s).
@@ -73,6 +73,7 @@ class MovingSolid {
   Vec3 middle_ = Vec3::Zero();      // of a rigid one's bounds, or its pivot, as a point of the body
   Placement listed_, begin_, end_;  // when the list was made; at the ends of the step
   bool still_ = false;              // begin is end
+  bool stands_ = false;
   // Of one that deforms. Its lists begin with windows of time, whatever the step that asks: so a run that goes
   // on from a file has the same lists, although the distance between frames is no exact one.
   std::shared_ptr<const MorphedShape> listed_shape_, shape_;

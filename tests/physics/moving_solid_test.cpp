@@ -157,24 +157,6 @@ TEST(MovingSolid, MotionOfEqualKeys_IsRestBitForBit) {
   EXPECT_EQ(a->hash(), b->hash());
 }
 
-TEST(MovingSolid, TenCellsPerFrame_IsSteppedAndThrowsNothing) {
-  const auto simulation = simulate(
-      scene_of(kPiston,
-               {"time.sound=1", "time.isolated=1", "materials.sand.youngs_modulus=100",
-                R"json(colliders.piston.motion.keys=[{"time":0},{"time":1,"translation":[2.4,0,0]}])json"}),
-      2);
-  const auto frame = simulation->advance_frame();
-  ASSERT_TRUE(frame) << frame.error().text();
-  EXPECT_GE(frame->steps, 17) << "10 cells, at most 0.6 of one a step";
-  EXPECT_LE(frame->largest_dt * 2.4, 0.6 * 0.01 * 1.000001);
-  EXPECT_EQ(frame->redone, 0) << "the first step too knows how fast the piston is";
-  const Diagnostics end = simulation->diagnose();
-  report("fast_piston_speed", end.max_speed, "m/s");
-  report("fast_piston_deepest_cells", end.deepest / 0.01);
-  EXPECT_LT(end.max_speed, 2.4 + 0.01 * 24.0);
-  EXPECT_LT(end.deepest, 0.01);
-}
-
 TEST(MovingSolid, PistonFromAfar_MeetsWhatHasNotMoved) {
   // Twenty cells away at first, and nothing moves that would bring an sort event: only its own way can tell.
   const auto simulation = simulate(scene_of(kPlate, {R"json(colliders=[{"name": "piston",

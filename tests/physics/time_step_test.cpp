@@ -1,12 +1,9 @@
-// Repose tests: each limit of the time step binds when it should and under its name, and frames end exactly.
+// Repose tests: each limit of the time step binds when it should and under its name.
 #include "engine/plan/time_step.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-
-#include "tests/physics/physics_rig.h"
 
 namespace repose {
 namespace {
@@ -146,41 +143,6 @@ TEST(TimeStep, FrameNotDivisible_EqualStepsFillIt) {
 TEST(TimeStep, FrameOfWholeSteps_RoundingCostsNoStep) {
   const double remaining = 4.0 * 5e-4 * (1.0 + 4e-16);
   EXPECT_DOUBLE_EQ(choose(limits(), {}, remaining).dt, 5e-4);
-}
-
-/// A small block on a floor; sound allows 3.4e-4 s, and no frame rate below divides it.
-constexpr const char* kBlock = R"json({"repose": 1, "name": "block", "grid": {"spacing": 0.01},
-  "time": {"frames_per_second": 24},
-  "materials": {"sand": {"type": "drucker_prager"}},
-  "bodies": [{"name": "block", "material": "sand",
-              "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.04, 0.04, 0.04]}}],
-  "colliders": [{"name": "floor", "shape": {"type": "plane"}, "friction": 0.5}]})json";
-
-TEST(TimeStep, FrameRates_FramesEndExactly) {
-  for (const double fps : {24.0, 29.97, 30.0, 48.0, 1000.0 / 7.0, 9999.0}) {
-    const auto simulation = simulate(scene_of(kBlock, {"time.frames_per_second=" + std::to_string(fps)}), 1);
-    const double given = std::stod(std::to_string(fps));
-    for (int frame = 1; frame <= 5; ++frame) {
-      const auto report = simulation->advance_frame();
-      ASSERT_TRUE(report) << report.error().text();
-      EXPECT_EQ(report->frame, frame);
-      EXPECT_EQ(report->time, frame / given) << fps;
-      EXPECT_EQ(simulation->counters().time_in_frame, 0.0);
-      EXPECT_LE(report->largest_dt, 3.4e-4);
-      EXPECT_EQ(report->steps, static_cast<std::int64_t>(std::ceil(1.0 / given / report->largest_dt - 1e-6)))
-          << "steps of a frame are equal, so no sliver is left at its end, " << fps;
-    }
-  }
-}
-
-TEST(TimeStep, FrameShorterThanAnyStep_Ends) {
-  const auto simulation = simulate(scene_of(kBlock, {"time.frames_per_second=1e12"}), 1);
-  for (int frame = 1; frame <= 3; ++frame) {
-    const auto report = simulation->advance_frame();
-    ASSERT_TRUE(report) << report.error().text();
-    EXPECT_EQ(report->steps, 1);
-    EXPECT_EQ(report->time, frame / 1e12);
-  }
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+// Repose tests: motions that are known exactly, and sand that flows as laboratories say.
+#include <gtest/gtest.h>
+
+#include "tests/stability/collapse_cases.h"
+#include "tests/stability/crowding_cases.h"
+#include "tests/stability/order_cases.h"
+#include "tests/stability/silo_cases.h"
+
+namespace repose {
+namespace {
+
+TEST(Battery, Case21_CrowdedAndSparseParticles_HaveRoom) {
+  battery::Case result(21, "crowded and sparse particles");
+  battery::expect_room_for_a_crowd(result, 196);
+  battery::expect_room_for_few(result, 64);
+}
+
+TEST(Battery, Case32_ManufacturedVortex_ConvergesByTheSecondOrder) {
+  battery::Case result(32, "manufactured motions");
+  battery::expect_order_of_the_vortex(result, {12, 24});
+}
+
+TEST(Battery, Case32_ManufacturedBox_ConvergesByTheSecondOrder) {
+  battery::Case result(32, "manufactured motions");
+  battery::expect_order_of_the_box(result, {16, 32});
+}
+
+TEST(Battery, Case33_Column_RunsAsExperimentsSay) {
+  battery::Case result(33, "column collapse");
+  battery::expect_runout_of_round_column(result, 0.5);
+  battery::expect_runout_of_plane_column(result);
+}
+
+TEST(Battery, Case33_Glue_IsToldFromSand) {
+  battery::Case result(33, "column collapse, control");
+  battery::expect_glue_is_told_from_round_column(result, 0.5);
+  battery::expect_glue_is_told_from_plane_column(result);
+}
+
+TEST(Battery, Case34_SlotOfASilo_FlowsByBeverloo) {
+  battery::Case result(34, "silo");
+  battery::expect_beverloo_of_a_slot(result, {12, 16, 22});
+}
+
+}  // namespace
+}  // namespace repose
