@@ -169,8 +169,9 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
     return Error{ErrorKind::kBadScene, "is for explicit steps; leave it out, or time.integrator at explicit",
                  scene.where(only)};
   }
-  if (auto stable = check_stencil(scene, compilation.sets); !compiled.integrator.implicit && !stable)
-    return stable.error();
+  if (!compiled.integrator.implicit) {
+    if (auto stable = check_stencil(scene, compilation.sets); !stable) return stable.error();
+  }
   compiled.plan = compile_plan(compilation, state, compiled.integrator.implicit);
   if (auto ends = check_first_step(scene, state, compiled.plan); !ends) return ends.error();
   state.rest.on = compiled.plan.sleep.has_value();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/effect/description.h"
+
 namespace repose {
 namespace {
 
@@ -29,9 +31,9 @@ double drift(const Bounds& bounds, const Placement& from, const Placement& to) {
 }  // namespace
 
 MovingSolid::MovingSolid(const Solid& solid, std::size_t index) : solid_(solid), index_(index) {
-  constexpr double kAlways = 1e9, kAnyRadius = 1.0;  // s, m
-  stands_ = (deforms() ? solid_.sequence->fastest(0.0, kAlways)
-                       : solid_.motion->fastest(0.0, kAlways, kAnyRadius)) == 0.0;
+  constexpr double kAnyRadius = 1.0;  // m
+  stands_ = (deforms() ? solid_.sequence->fastest(0.0, kForEver)
+                       : solid_.motion->fastest(0.0, kForEver, kAnyRadius)) == 0.0;
   if (deforms()) return;
   const Bounds body = solid_.shape->bounds();
   const bool finite = body.lower.allFinite() && body.upper.allFinite();

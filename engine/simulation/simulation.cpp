@@ -191,12 +191,11 @@ class SimulationOf final : public Simulation {
     watch_speed();
     if (!report.alarm) return {};
     if (!stepper_.plan().energy->stops) {
-      warnings_.push_back(*report.alarm);
+      warnings_.push_back(report.alarm->text);
       return {};
     }
-    failed_ = fastest_particle(state_, "is the fastest");
-    failed_->advice = "smaller time.sound and time.strain, or grid.stencil quadratic, may help";
-    return Error{ErrorKind::kPhysics, *report.alarm, scene_.name};
+    failed_ = report.alarm->fastest;
+    return Error{ErrorKind::kPhysics, report.alarm->text, scene_.name};
   }
 
   void watch_speed() {

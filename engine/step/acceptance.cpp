@@ -46,7 +46,7 @@ void Acceptance<Real>::bound(const BlockSweep<Real>& sweep, std::size_t block) {
 
 /// By its velocity and what its C tells nodes a cell away; one that is not a number comes first.
 template <class Real>
-FailedParticle fastest_particle(const State<Real>& state, std::string what) {
+FailedParticle fastest_particle(const State<Real>& state, std::string what, std::string advice) {
   FailedParticle failed;
   double most = -1.0;
   for (const auto& set : state.sets) {
@@ -68,7 +68,7 @@ FailedParticle fastest_particle(const State<Real>& state, std::string what) {
   }
   failed.determinant = 1.0;
   failed.reason = std::move(what);
-  failed.advice = "look for a solid, an emitter or a force that drives it, and for a floor that is missing";
+  failed.advice = std::move(advice);
   return failed;
 }
 
@@ -168,7 +168,7 @@ FailedParticle Acceptance<Real>::failure(const OccupiedBlock<Real>& block, const
 
 template class Acceptance<float>;
 template class Acceptance<double>;
-template FailedParticle fastest_particle(const State<float>&, std::string);
-template FailedParticle fastest_particle(const State<double>&, std::string);
+template FailedParticle fastest_particle(const State<float>&, std::string, std::string);
+template FailedParticle fastest_particle(const State<double>&, std::string, std::string);
 
 }  // namespace repose

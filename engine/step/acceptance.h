@@ -46,6 +46,6 @@ class Acceptance {
 
 /// The particle for whose sake no step is short enough; `what` it is, such as "is too fast for any step".
 template <class Real>
-FailedParticle fastest_particle(const State<Real>& state, std::string what);
+FailedParticle fastest_particle(const State<Real>& state, std::string what, std::string advice);
 
 }  // namespace repose

@@ -160,22 +160,26 @@ void EnergyWatch<Real>::after_step(const State<Real>& state, Threads& threads, b
   const double judged = alarm_->drawn > 0.0 ? now.energy() - now.elastic : now.energy();
   if (judged <= begun_with_ + given_ + drawn + alarm_->share * scale_) return;
   told_ = true;
-  report.alarm = text(state, now);
+  report.alarm = alert(state, now);
 }
 
 template <class Real>
-std::string EnergyWatch<Real>::text(const State<Real>& state, const Sums& now) const {
-  const FailedParticle fastest = fastest_particle(state, "");
-  const Triple& place = fastest.position;
+EnergyAlert EnergyWatch<Real>::alert(const State<Real>& state, const Sums& now) const {
+  EnergyAlert alert{
+      "", fastest_particle(state, "is the fastest",
+                           "smaller time.sound and time.strain, or grid.stencil quadratic, may help")};
+  const FailedParticle& fastest = alert.fastest;
   char numbers[512];
   std::snprintf(
       numbers, sizeof numbers,
       "energy comes from nowhere: %.4g J after %lld steps, where %.4g J at the start and %.3g J from "
       "outside could leave no more than %.4g J; the fastest particle is %u of '%s', %.3g m/s at (%.4g, "
-      "%.4g, %.4g) m; smaller time.sound and time.strain, or grid.stencil quadratic, may help",
+      "%.4g, %.4g) m; ",
       now.energy(), static_cast<long long>(state.counters.step), begun_with_, given_, begun_with_ + given_,
-      fastest.id, fastest.set.c_str(), to_vec3(fastest.velocity).norm(), place[0], place[1], place[2]);
-  return numbers;
+      fastest.id, fastest.set.c_str(), to_vec3(fastest.velocity).norm(), fastest.position[0],
+      fastest.position[1], fastest.position[2]);
+  alert.text = numbers + fastest.advice;
+  return alert;
 }
 
 template class EnergyWatch<float>;

@@ -46,7 +46,7 @@ class EnergyWatch {
   Sums look(const State<Real>& state, Threads& threads);
   void sum_block(const State<Real>& state, std::size_t occupied, Sums& sums) const;
   double given_since(const State<Real>& state, const Sums& now) const;
-  std::string text(const State<Real>& state, const Sums& now) const;
+  EnergyAlert alert(const State<Real>& state, const Sums& now) const;
 
   const EnergyAlarm* alarm_;  // null: none
   const ContactLog* solids_;  // null: none moves

@@ -31,6 +31,12 @@ struct EnergyLook {
   double kinetic = 0.0, affine = 0.0, elastic = 0.0, potential = 0.0, given = 0.0;
 };
 
+/// Energy that comes from nowhere, in words, and the particle that most likely has it.
+struct EnergyAlert {
+  std::string text;
+  FailedParticle fastest;
+};
+
 struct StepReport {
   bool accepted = false;
   bool interrupted = false;  ///< it was left because somebody wished so; nothing has changed
@@ -40,7 +46,7 @@ struct StepReport {
   std::string first_refusal;               ///< why, the first time; empty where it was not
   std::optional<FailedParticle> failed;    ///< of the last refusal
   std::optional<EnergyLook> energy;        ///< after steps in which somebody looked
-  std::optional<std::string> alarm;        ///< energy that comes from nowhere, in words; told once
+  std::optional<EnergyAlert> alarm;        ///< told once
   std::optional<Error> error;              ///< why no step was tried: an event failed, or memory would not do
   std::optional<ImplicitReport> implicit;  ///< of the last try, where steps are implicit
 

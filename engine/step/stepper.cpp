@@ -66,7 +66,8 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   report.limit = size.limit;
   report.dt = size.dt;
   if (const std::string why = endless(size, remaining, plan_.limits.max_step); !why.empty()) {
-    report.failed = fastest_particle(state, why);
+    report.failed = fastest_particle(
+        state, why, "look for a solid, an emitter or a force that drives it, and for a floor that is missing");
     return report;
   }
   energy_.begin(state, threads_);
