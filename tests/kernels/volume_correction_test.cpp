@@ -72,5 +72,24 @@ TYPED_TEST(VolumeCorrection, AnyStrain_KeepsTheSumOfTraceAndGain) {
   }
 }
 
+/// One particle: pulled open and pressed shut again and again, no volume stays gained.
+TYPED_TEST(VolumeCorrection, TenThousandCycles_GainNoVolume) {
+  for (const Target target : supported_targets()) {
+    std::vector<Symmetric<TypeParam>> strains{
+        {TypeParam(-0.001), 0, 0, TypeParam(-0.001), 0, TypeParam(-0.001)}};
+    std::vector<TypeParam> gained{0};
+    for (int cycle = 0; cycle < 10000; ++cycle) {
+      for (const TypeParam pull : {TypeParam(0.01), TypeParam(-0.01)}) {
+        for (const int diagonal : {0, 3, 5}) strains[0][diagonal] += pull;
+        correct(target, strains, gained);
+      }
+    }
+    EXPECT_NEAR(static_cast<double>(exact(strains[0]).trace()) + gained[0], -0.003,
+                sizeof(TypeParam) == 4 ? 1e-3 : 1e-11)
+        << target_name(target);
+    EXPECT_NEAR(gained[0], 0, sizeof(TypeParam) == 4 ? 1e-3 : 1e-11) << target_name(target);
+  }
+}
+
 }  // namespace
 }  // namespace repose

@@ -34,16 +34,6 @@ double flow() {
   return std::numbers::pi * kRadius * kRadius * kSpeed;
 }
 
-bool run_frames(Simulation& simulation, int frames) {
-  for (int k = 0; k < frames; ++k) {
-    if (const auto frame = simulation.advance_frame(); !frame) {
-      ADD_FAILURE() << frame.error().text();
-      return false;
-    }
-  }
-  return true;
-}
-
 void expect_exact(const Simulation& simulation) {
   const LedgerReport ledger = simulation.ledger();
   EXPECT_EQ(ledger.initial + ledger.emitted.particles - ledger.removed.particles, ledger.held.particles);
@@ -236,53 +226,6 @@ TEST(Sink, Latency_IsAboutACell) {
   EXPECT_LT(deepest, 2.0 * kSpacing);
   EXPECT_GT(simulation->ledger().removed.particles, 0u);
   expect_exact(*simulation);
-}
-
-TEST(Sink, Domain_RemovesWhatLeavesIt) {
-  const auto simulation = simulate(scene_of(
-      kColumn,
-      {kFalling, R"json(bodies=[{"name": "ball", "material": "gel", "velocity": [2, 0, 0],
-                  "shape": {"type": "sphere", "center": [0, 0.5, 0], "radius": 0.1}}])json",
-       R"json(sinks=[{"name": "world", "outside": true, "shape": {"type": "sphere", "radius": 0.8}}])json"}));
-  const std::uint64_t ball = simulation->particles();
-  ASSERT_TRUE(run_frames(*simulation, 12));
-  expect_exact(*simulation);
-  EXPECT_EQ(simulation->ledger().initial, ball);
-  EXPECT_GT(simulation->ledger().removed.particles, ball);
-  for (const auto& x : simulation->points().position) {
-    EXPECT_LT(std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), 0.8 + 1e-6);
-  }
-}
-
-/// A ball is filled a thousand times over, all of it is removed, and later it is filled again.
-TEST(Sink, AllGoneInMidRun_FiniteAndExact) {
-  const Scene scene = scene_of(
-      kColumn,
-      {
-          R"json(emitters=[{"name": "flood", "material": "loose", "type": "volume", "particles_per_cell": 1, "end": 0.2,
-        "rate": 2.6180, "shape": {"type": "sphere", "radius": 0.05}},
-       {"name": "late", "material": "gel", "type": "volume", "start": 0.4, "rate": 0.01, "velocity": [0.1, 0, 0],
-        "shape": {"type": "sphere", "radius": 0.05}}])json",
-          R"json(sinks=[{"name": "end", "start": 0.22, "end": 0.3, "shape": {"type": "sphere", "radius": 10}}])json"});
-  const auto simulation = simulate(scene);
-  ASSERT_TRUE(run_frames(*simulation, 5));
-  const LedgerReport full = simulation->ledger();
-  const double filling = 4.0 / 3.0 * std::numbers::pi * std::pow(0.05, 3);
-  EXPECT_NEAR(full.held.mass, 1000 * kDensity * filling, 0.1);
-  EXPECT_TRUE(std::isfinite(simulation->diagnose().max_speed));
-  ASSERT_TRUE(run_frames(*simulation, 3));
-  EXPECT_EQ(simulation->particles(), 0u);
-  EXPECT_EQ(simulation->ledger().removed.particles, full.held.particles);
-  EXPECT_EQ(simulation->memory().blocks, 0u);
-  EXPECT_EQ(simulation->points().size(), 0u);
-  EXPECT_EQ(simulation->diagnose().max_speed, 0.0);
-  ASSERT_TRUE(run_frames(*simulation, 4));
-  EXPECT_GT(simulation->particles(), 0u);
-  EXPECT_EQ(simulation->ledger().emitters[1].particles, simulation->particles());
-  expect_exact(*simulation);
-  const PointCloud points = simulation->points();
-  EXPECT_GE(points.id.front(), full.held.particles) << "ids are not used twice";
-  for (const auto& v : points.velocity) ASSERT_TRUE(std::isfinite(v[0] + v[1] + v[2]));
 }
 
 /// Two spouts beside one another onto a block in a domain.

@@ -19,17 +19,6 @@ constexpr const char* kBall =
   "materials": {"sand": {"type": "drucker_prager"}},
   "bodies": [{"name": "ball", "material": "sand", "shape": {"type": "sphere", "radius": 0.03}}]})json";
 
-/// One particle.
-constexpr const char* kGrain = R"json({"repose": 1, "name": "grain", "grid": {"spacing": 0.01},
-  "time": {"max_step": 1e-4},
-  "materials": {"sand": {"type": "drucker_prager"}},
-  "bodies": [{"name": "grain", "material": "sand", "particles_per_cell": 1, "velocity": [1.5, 3, -0.5],
-              "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.01, 0.01, 0.01]}}]})json";
-
-Vec3 displacement(const Vec3& velocity, double n) {
-  return n * kStep * velocity + Vec3(0.0, -kGravity, 0.0) * kStep * kStep * n * (n + 1.0) / 2.0;
-}
-
 struct Fall {
   double velocity_error = 0.0, height_error = 0.0;  // relative
   double elastic_energy = 0.0;
@@ -60,54 +49,6 @@ TEST(FreeFall, ContinuousFormula_IsRejected) {
   const Fall figures = fall(1000, kGravity * 1000.0 / 1001.0);
   EXPECT_GT(figures.height_error, 1e-12);
   EXPECT_GT(figures.velocity_error, 1e-12);
-}
-
-/// Largest distance from the discrete path over 10^4 steps, over the length of the path.
-double ballistic_error(const std::vector<std::string>& overrides, int skip_every = 0) {
-  constexpr int kSteps = 10000;
-  const Scene scene = scene_of(kGrain, overrides);
-  const Vec3 velocity = scene.bodies[0].velocity;
-  const auto simulation = simulate(scene, 1);
-  const auto place = [&] {
-    const PointCloud points = simulation->points();
-    return Vec3(points.position[0][0], points.position[0][1], points.position[0][2]);
-  };
-  const Vec3 start = place();
-  double worst = 0.0, length = 0.0;
-  Vec3 before = Vec3::Zero();
-  for (int n = 1; n <= kSteps; ++n) {
-    if (!run_steps(*simulation, 1)) return 1.0;
-    const int counted = skip_every > 0 ? n - n / skip_every : n;
-    const Vec3 expected = displacement(velocity, counted);
-    length += (expected - before).norm();
-    before = expected;
-    if (n % 100 == 0) worst = std::max(worst, (place() - start - expected).norm());
-  }
-  return worst / length;
-}
-
-TEST(Ballistic, TenThousandStepsInFloat_KeepThePath) {
-  const double near = ballistic_error({});
-  const double far = ballistic_error({"grid.origin_cells=[1000000,-1000000,1000000]"});
-  report("ballistic_float_error", near);
-  report("ballistic_float_error_at_1e6_cells", far);
-  EXPECT_LT(near, 1e-4);
-  EXPECT_LT(far, 1e-4);
-}
-
-TEST(Ballistic, TenThousandStepsInDouble_KeepThePath) {
-  const double near = ballistic_error({"grid.precision=double"});
-  const double far = ballistic_error({"grid.precision=double", "grid.origin_cells=[1000000,-1000000,1000000]"});
-  report("ballistic_double_error", near);
-  report("ballistic_double_error_at_1e6_cells", far);
-  EXPECT_LT(near, 1e-11);
-  EXPECT_LT(far, 1e-11);
-}
-
-TEST(Ballistic, PathWithLostSteps_IsRejected) {
-  // One step in 2000 lost: 5e-4 of the path.
-  EXPECT_GT(ballistic_error({}, 2000), 1e-4);
-  EXPECT_GT(ballistic_error({"grid.precision=double"}, 2000), 1e-11);
 }
 
 }  // namespace

@@ -83,6 +83,18 @@ TEST(ManufacturedForce, IsThatOfTheBalanceOfMomentum) {
   EXPECT_GT(control, 0.01 * vortex_size) << "the balance does not tell the two signs apart";
 }
 
+TEST(ManufacturedVortex, AtItsHalfPeriod_IsWhereItBegan) {
+  const Errors coarse = vortex<double>({cells(16)}), fine = vortex<double>({cells(32)});
+  report("vortex_rms_16_cells", coarse.rms, "m");
+  report("vortex_rms_32_cells", fine.rms, "m");
+  report("vortex_relative_16_cells", coarse.relative);
+  report("vortex_relative_32_cells", fine.relative);
+  report("vortex_order", order(coarse, fine));
+  EXPECT_LT(coarse.relative, 0.02);
+  EXPECT_LT(fine.relative, 0.02);
+  EXPECT_GT(order(coarse, fine), 1.4);
+}
+
 TEST(ManufacturedVortex, WithTheOtherSignOrNoForce_IsRejected) {
   const double right = vortex<double>({cells(24)}).rms;
   const double other = vortex<double>({cells(24)}, circulating_vortex_force).rms;
@@ -107,6 +119,19 @@ TEST(ManufacturedVortex, InEveryTransferThatKeepsSpin_IsWhereItBegan) {
     report(std::string("vortex_relative_") + transfer, errors.relative);
     EXPECT_LT(errors.relative, 0.02) << transfer;
   }
+}
+
+TEST(ManufacturedBox, AfterAPeriod_ConvergesByTheSecondOrder) {
+  const Errors coarse = box<double>({cells(16)}, 4), middle = box<double>({cells(32)}, 4),
+               fine = box<double>({cells(64)}, 4);
+  report("box_rms_16_cells", coarse.rms, "m");
+  report("box_rms_32_cells", middle.rms, "m");
+  report("box_rms_64_cells", fine.rms, "m");
+  report("box_order_16_to_32", order(coarse, middle));
+  report("box_order_32_to_64", order(middle, fine));
+  EXPECT_GT(order(coarse, middle), 1.6);
+  EXPECT_GT(order(middle, fine), 1.6);
+  EXPECT_LT(fine.rms, 0.002 * kAmplitude);
 }
 
 TEST(ManufacturedBox, WhereItIsStretchedMost_IsWhereItShouldBe) {

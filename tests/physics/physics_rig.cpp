@@ -80,6 +80,16 @@ bool run_steps(Simulation& simulation, int steps) {
   return true;
 }
 
+bool run_frames(Simulation& simulation, int frames) {
+  for (int k = 0; k < frames; ++k) {
+    if (const auto frame = simulation.advance_frame(); !frame) {
+      ADD_FAILURE() << frame.error().text();
+      return false;
+    }
+  }
+  return true;
+}
+
 bool run_until(Simulation& simulation, double time) {
   while (simulation.counters().time < time) {
     if (!run_steps(simulation, 1)) return false;

@@ -26,8 +26,10 @@ Scene scene_file(const std::string& file, const std::vector<std::string>& overri
 /// A simulation that must start.
 std::unique_ptr<Simulation> simulate(const Scene& scene, int threads = 2, Target target = best_target());
 
-/// `steps` steps, or as many as lead to `time` (s); a step that is refused fails the test. False then.
+/// `steps` steps, whole frames, or as many steps as lead to `time` (s); one that is refused fails the test.
+/// False then.
 bool run_steps(Simulation& simulation, int steps);
+bool run_frames(Simulation& simulation, int frames);
 bool run_until(Simulation& simulation, double time);
 
 /// Prints a figure of merit and keeps it in the test's report.
