@@ -38,7 +38,7 @@ Words both(Words a, const Words& b) {
 
 void expect_solved(battery::Case& result, const std::string& name, const Words& overrides) {
   const auto simulation = simulate(scene_of(kPair, overrides), 1);
-  const Ride figures = ride(*simulation, 1.0, 25);
+  const Ride figures = ride(*simulation, 1.0, 40);
   std::cout << "[ ride     ] " << name << '\n';
   report("contrast", figures);
   result.holds(name + ": no step refused", !figures.refused);

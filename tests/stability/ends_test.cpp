@@ -174,7 +174,6 @@ TEST(Ends, PlaneStrainThatWillNotFit_IsRefusedAtOnce) {
 TEST(Ends, ParametersInAChain_AreEvaluated) {
   std::string text = R"({"repose": 1, "name": "chain", "grid": {"spacing": 0.1}, "parameters": {"a0": 1)";
   constexpr int kLinks = 3000;
-  // Backwards by name, so that none stands after those that it rests on.
   for (int k = 1; k <= kLinks; ++k) {
     text += ", \"a" + std::to_string(k) + "\": \"= a" + std::to_string(k - 1) + " + 1\"";
   }

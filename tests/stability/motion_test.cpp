@@ -100,6 +100,7 @@ TEST(Battery, Case16_BallisticGrain_KeepsItsPath) {
   asked.at_most("double, 1e6 cells away", ballistic_error({wide, far}), 1e-11);
   // One step in 2000 lost: 5e-4 of the path.
   asked.at_least("control of lost steps", ballistic_error({}, 2000), 1e-4);
+  asked.at_least("control of lost steps, double", ballistic_error({wide}, 2000), 1e-11);
 }
 
 /// Sand rains onto an elastic block and into a turning paddle on a floor that slides, a corner is pinned, an

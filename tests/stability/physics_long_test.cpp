@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/physics/physics_rig.h"
-#include "tests/stability/collapse_cases.h"
 #include "tests/stability/crowding_cases.h"
 #include "tests/stability/leak_cases.h"
 #include "tests/stability/order_cases.h"
@@ -31,14 +30,6 @@ TEST(Battery, Case32_ManufacturedMotions_ConvergeByTheSecondOrder) {
       1.78, "1.98 from 12 to 24 cells; then what places at random leave of the integrals shows"};
   battery::expect_order_of_the_vortex(result, {16, 32, 64}, &missed);
   battery::expect_order_of_the_box(result, {16, 32, 64, 128});
-}
-
-TEST(Battery, Case33_HighColumns_RunsAsExperimentsSay) {
-  battery::Case result(33, "column collapse");
-  battery::expect_runout_of_round_column(result, 1.0);
-  battery::expect_runout_of_round_column(result, 2.0);
-  battery::expect_glue_is_told_from_round_column(result, 1.0);
-  battery::expect_glue_is_told_from_round_column(result, 2.0);
 }
 
 TEST(Battery, Case34_Silo_FlowsByBeverloo) {
