@@ -122,6 +122,25 @@ Result<void> check_first_step(const Scene& scene, const State<Real>& state, cons
   return Error{ErrorKind::kBadScene, text, scene.where(key_of(size.limit, scene, state))};
 }
 
+/// Refuses masses of which a node's sums, or momenta, would be no number of the scene's precision, or none that
+/// has all its digits.
+template <class Real>
+Result<void> check_masses(const Scene& scene, const State<Real>& state) {
+  constexpr double kRoom = 1e10, least = kRoom * double(std::numeric_limits<Real>::min()),
+                   most = double(std::numeric_limits<Real>::max()) / kRoom;
+  for (const ParticleSet<Real>& set : state.sets) {
+    if (set.particle_mass >= least && set.particle_mass <= most) continue;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "makes particles of %.3g kg in '%s', and those of %.0e to %.0e kg can be computed with%s",
+                  set.particle_mass, set.name.c_str(), least, most,
+                  sizeof(Real) == sizeof(float) ? "; grid.precision double has more room" : "");
+    return Error{ErrorKind::kBadScene, text,
+                 scene.where("materials." + material_of(scene, set.material).name + ".density")};
+  }
+  return {};
+}
+
 }  // namespace
 
 SetDescription set_description(const Scene& scene, const std::string& name, int material) {
@@ -163,6 +182,7 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   Compilation<Real> compilation{scene, options, std::move(*around)};
   if (auto made = make_effects(compilation); !made) return made.error();
   if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
+  if (auto sound = check_masses(scene, state); !sound) return sound.error();
   const char* const only = explicit_only(scene.effects);
   compiled.integrator = choose_integrator(compilation, state, only);
   if (compiled.integrator.implicit && only != nullptr) {

@@ -105,6 +105,7 @@ StepForecast forecast(const Compilation<Real>& compilation, const State<Real>& s
   forecast.implicit_step = choose_step(limits, transfer, state.spacing, counters, forecast.frame);
   for (const auto& set : state.sets)
     limits.sets.push_back(stiffness_of(material_of(scene, set.material).elasticity()));
+  limits.acceleration = compilation.surroundings.gravity.norm();
   forecast.explicit_step = choose_step(limits, transfer, state.spacing, counters, forecast.frame);
   forecast.explicit_cost = step_cost(scene);
   forecast.effects_cost = effects_cost(scene);

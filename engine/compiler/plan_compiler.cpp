@@ -77,6 +77,7 @@ StepPlan<Real> empty_plan(const Compilation<Real>& compilation, const State<Real
   plan.advection = scene.grid.advection;
   if (plan.advection == Advection::kAfterFriction) plan.scratch.share_arena(kArenaAfterFriction, kArena);
   plan.energy = energy_alarm(compilation, state, implicit);
+  if (!implicit) plan.limits.acceleration = compilation.surroundings.gravity.norm();
   if (implicit) plan.implicit.emplace(ImplicitPlan<Real>{scene.implicit, {}});
   double lightest = std::numeric_limits<double>::infinity();
   for (const ParticleSet<Real>& set : state.sets) {

@@ -183,40 +183,36 @@ typename ContactTables<Real>::Touches ContactTables<Real>::find_touches(std::siz
   return touches;
 }
 
+/// The solids near a node, as collide() asks for them.
 template <class Real>
-template <typename ContactTables<Real>::Beside kBeside, class Record>
-void ContactTables<Real>::collide_node(const Touches& touches, AtNode& at, std::size_t node, const Vec3& x,
-                                       Real dt, Real* v, Real* rubbed, Record record) const {
-  constexpr bool kAnyMoves = kBeside != Beside::kResting;
-  const std::size_t count = touches.size();
-  const auto moves = [&](std::size_t k) { return kAnyMoves && touches[k].moving != nullptr; };
-  const auto contact = [&](std::size_t k) -> const NodeContact<Real>& {
-    return moves(k) ? at.met[k] : touches[k].nodes[node];
-  };
-  const auto wall = [&](std::size_t k) -> Real* { return moves(k) ? at.wall[k].data() : nullptr; };
-  for (std::size_t k = 0; k < count; ++k) {
-    if (moves(k)) {
-      const MovingSolid& solid = *touches[k].moving;
-      const auto step = static_cast<double>(dt);
-      if (kBeside == Beside::kDeforming && solid.deforms()) {
-        at.met[k] = solid.meet<true>(x, step, spacing_, flat_axis_, v, wall(k));
-      } else {
-        at.met[k] = solid.meet<false>(x, step, spacing_, flat_axis_, v, wall(k));
-      }
+template <typename ContactTables<Real>::Beside kBeside>
+struct ContactTables<Real>::AroundNode {
+  const ContactTables& tables;
+  const Touches& touches;
+  AtNode& room;
+  std::size_t node;
+  Vec3 x;  // where it is; of no account where nothing moves
+  double dt;
+
+  std::size_t size() const { return touches.size(); }
+  const Solid& its(std::size_t k) const { return tables.solids_[touches[k].solid]; }
+  int solid(std::size_t k) const { return static_cast<int>(touches[k].solid); }
+  Contact contact(std::size_t k) const { return its(k).contact; }
+  Real friction(std::size_t k) const { return static_cast<Real>(its(k).friction); }
+  bool moves(std::size_t k) const { return kBeside != Beside::kResting && touches[k].moving != nullptr; }
+  const NodeContact<Real>& at(std::size_t k) const { return moves(k) ? room.met[k] : touches[k].nodes[node]; }
+  Real* wall(std::size_t k) const { return moves(k) ? room.wall[k].data() : nullptr; }
+  void meet(std::size_t k, const Real* v) const {
+    if (!moves(k)) return;
+    const MovingSolid& solid = *touches[k].moving;
+    const double spacing = tables.spacing_;
+    if (kBeside == Beside::kDeforming && solid.deforms()) {
+      room.met[k] = solid.meet<true>(x, dt, spacing, tables.flat_axis_, v, wall(k));
+    } else {
+      room.met[k] = solid.meet<false>(x, dt, spacing, tables.flat_axis_, v, wall(k));
     }
-    record.before(v);
-    at.impulse[k] = constrain(solids_[touches[k].solid].contact, contact(k), wall(k), dt, v);
-    record.after(touches[k].solid, wall(k), v);
   }
-  std::copy_n(v, 3, rubbed);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Real bound = static_cast<Real>(solids_[touches[k].solid].friction) * at.impulse[k];
-    if (!(bound > Real(0))) continue;
-    record.before(rubbed);
-    rub(contact(k).normal, wall(k), bound, rubbed);
-    record.after(touches[k].solid, wall(k), rubbed);
-  }
-}
+};
 
 /// Calls record(mass, place) for a recorder of each node with mass. Returns whether friction changed one.
 template <class Real>
@@ -230,6 +226,7 @@ bool ContactTables<Real>::collide_block(const BlockPlace<Real>& place, Real dt, 
       beside = std::max(beside, touch.moving->deforms() ? Beside::kDeforming : Beside::kRigid);
   }
   AtNode room(touches.size());
+  Corner<Real> corner;
   const auto act = [&]<Beside kBeside>() {
     bool any_friction = false;
     for (std::size_t node = 0; node < kBlockNodes; ++node) {
@@ -237,7 +234,8 @@ bool ContactTables<Real>::collide_block(const BlockPlace<Real>& place, Real dt, 
       std::copy_n(at, kNodeValues, after);
       if (!(at[0] > Real(0))) continue;
       const Vec3 x = kBeside == Beside::kResting ? Vec3(0, 0, 0) : place.node(node);
-      collide_node<kBeside>(touches, room, node, x, dt, at + 1, after + 1, record(at[0], x));
+      const AroundNode<kBeside> solids{*this, touches, room, node, x, static_cast<double>(dt)};
+      repose::collide(solids, corner, dt, at + 1, after + 1, record(at[0], x));
       any_friction = any_friction || !std::equal(at, at + kNodeValues, after);
     }
     return any_friction;
@@ -274,21 +272,18 @@ Constraint<Real> ContactTables<Real>::constraint(const Touch& touch, const Block
                                                  std::size_t node, Real dt) const {
   // No node goes farther than a cell along each axis in a step: that far a contact may matter.
   const Real fast[3] = {static_cast<Real>(kRootOfThree * spacing_ / static_cast<double>(dt)), Real(0), Real(0)};
-  Constraint<Real> made;
+  Real velocity[3];
   const auto meet = [&](auto deforms) {
     return touch.moving->template meet<deforms.value>(place.node(node), static_cast<double>(dt), spacing_,
-                                                      flat_axis_, fast, made.velocity);
+                                                      flat_axis_, fast, velocity);
   };
   const NodeContact<Real> at = touch.moving == nullptr   ? touch.nodes[node]
                                : touch.moving->deforms() ? meet(std::true_type())
                                                          : meet(std::false_type());
+  Constraint<Real> made =
+      constraint_of(solids_[touch.solid].contact, at, touch.moving == nullptr ? nullptr : velocity, dt);
   made.node = static_cast<int>(node);
-  made.contact = solids_[touch.solid].contact;
   made.solid = static_cast<int>(touch.solid);
-  made.distance = at.distance;
-  std::copy_n(at.normal, 3, made.normal);
-  made.bound = dot(made.normal, made.velocity);
-  if (made.contact == Contact::kSeparating) made.bound += (std::min(at.distance, Real(0)) - at.distance) / dt;
   if (made.contact != Contact::kSticky) made.friction = static_cast<Real>(solids_[touch.solid].friction);
   return made;
 }

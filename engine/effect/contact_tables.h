@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/effect/moving_solid.h"
+#include "engine/plan/collide.h"
 #include "engine/plan/contact_log.h"
 #include "engine/plan/step_plan.h"
 
@@ -70,14 +71,10 @@ class ContactTables {
   template <class T>
   using PerTouch = boost::container::small_vector<T, 16>;
   using Touches = PerTouch<Touch>;
-  /// Of one node.
+  /// Of one node beside solids that move.
   struct AtNode {
     explicit AtNode(std::size_t touches)
-        : impulse(touches),
-          met(touches, boost::container::default_init),
-          wall(touches, boost::container::default_init) {}
-    PerTouch<Real> impulse;  ///< |v-bar - v*|: the impulse over the mass, m/s
-    // Beside solids that move:
+        : met(touches, boost::container::default_init), wall(touches, boost::container::default_init) {}
     PerTouch<NodeContact<Real>> met;
     PerTouch<std::array<Real, 3>> wall;
   };
@@ -95,9 +92,8 @@ class ContactTables {
   bool near_any(std::size_t block) const;
   bool near_moving(std::size_t block) const;
   Touches find_touches(std::size_t block, const BlockPlace<Real>& place) const;
-  template <Beside kBeside, class Record>
-  void collide_node(const Touches& touches, AtNode& at, std::size_t node, const Vec3& x, Real dt, Real* v,
-                    Real* rubbed, Record record) const;
+  template <Beside kBeside>
+  struct AroundNode;
   template <class Record>
   bool collide_block(const BlockPlace<Real>& place, Real dt, const Touches& touches, Real* nodes, Real* rubbed,
                      Record record) const;

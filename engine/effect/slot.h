@@ -174,8 +174,10 @@ class ConstraintSlot {
     Real* const nodes = at.write(kNodeVelocity);
     for (const Constraint<Real>& constraint : constraints) {
       Real* const v = nodes + constraint.node * kNodeValues + 1;
-      const Real impulse = constrain(constraint.contact, beside(constraint), constraint.velocity, at.dt(), v);
-      if (constraint.friction > Real(0))
+      Real impulse;
+      const bool acts =
+          constrain(constraint.contact, beside(constraint), constraint.velocity, at.dt(), v, impulse);
+      if (acts && constraint.friction > Real(0))
         rub(constraint.normal, constraint.velocity, constraint.friction * impulse, v);
     }
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/implicit/friction.h"
+#include "engine/plan/collide.h"
 #include "engine/plan/constraint.h"
 #include "kernels/layout/node_block.h"
 
@@ -41,7 +42,7 @@ class ContactSet {
   template <class Visit>
   void for_each_reaction(std::size_t block, Visit visit) const {
     for (const Node& node : nodes_[block]) {
-      if (node.rank > 0) visit(node.index, node.reaction);
+      if (node.held.rank() > 0) visit(node.index, node.reaction);
     }
   }
 
@@ -84,21 +85,12 @@ class ContactSet {
   std::size_t bytes() const;
 
  private:
-  struct Listed {
-    Constraint<Real> law;         // as it was listed
-    Constraint<Real> constraint;  // of changes of velocity
-    bool active = false;
-    Real push = 0;  // its part of J along its normal, N s
-  };
   struct Node {
     int index = 0;
-    int rank = 0;         // directions held
-    Vector3 axis[3];      // orthonormal
-    Real value[3]{};      // v . axis
-    Vector3 normal[3];    // by which each came in, and of which contact that is
-    int contact[3] = {};  // -1: of one that holds all
-    Vector3 reaction;     // J
-    std::vector<Listed> contacts;
+    HeldDirections<Real> held;
+    Vector3 reaction;                    // J
+    std::vector<Constraint<Real>> laws;  // as they were listed
+    std::vector<Hold<Real>> holds;       // of changes of velocity; pushes in N s
     Friction<Real> evaluated, tangent;
   };
   /// What linear solves ask for in every iteration, without the rest of a node.
@@ -110,13 +102,20 @@ class ContactSet {
   struct Tangents {
     std::vector<AtNode> rub, inverse;  // D, and Q (m + D)^-1 m
   };
-  static void span(Node& node);
-  static void share_out(Node& node);
-  static Vector3 along_walls(const Node& node, Vector3 x);
-  static const Constraint<Real>* rough(const Node& node);
   static Vector3 slip(const Node& node, const Constraint<Real>& hold, const Real* v);
-  static Real friction_bound(const Node& node, std::size_t k);
-  static Real friction_bound(const Node& node);
+
+  /// The solids at a node, as collide() asks for them.
+  struct AroundNode {
+    const std::vector<Constraint<Real>>& laws;
+
+    std::size_t size() const { return laws.size(); }
+    int solid(std::size_t k) const { return laws[k].solid; }
+    Contact contact(std::size_t k) const { return laws[k].contact; }
+    Real friction(std::size_t k) const { return laws[k].friction; }
+    NodeContact<Real> at(std::size_t k) const { return beside(laws[k]); }
+    const Real* wall(std::size_t k) const { return laws[k].velocity; }
+    void meet(std::size_t, const Real*) const {}
+  };
 
   bool rubs_;
   std::vector<std::vector<Node>> nodes_;  // per block
@@ -127,31 +126,14 @@ template <class Real>
 template <class Record>
 void ContactSet<Real>::act(std::size_t block, Real dt, const Real* nodes, Real* v, Real* rubbed,
                            Record record) const {
-  std::vector<Real> impulse;  // over mass, per contact of a node
+  Corner<Real> corner;
   for (const Node& node : nodes_[block]) {
     const std::size_t at = static_cast<std::size_t>(node.index) * kNodeValues;
     const Real mass = nodes[at];
     if (!(mass > Real(0))) continue;
     Real *const bar = v + at + 1, *const tilde = rubbed + at + 1;
     for (int axis = 0; axis < 3; ++axis) bar[axis] -= node.reaction[axis] / mass;
-    auto recorder = record(static_cast<std::size_t>(node.index), mass);
-    impulse.clear();
-    for (const Listed& contact : node.contacts) {
-      const Constraint<Real>& law = contact.law;
-      recorder.before(bar);
-      impulse.push_back(constrain(law.contact, beside(law), law.velocity, dt, bar));
-      if (law.solid != Constraint<Real>::kNoSolid)
-        recorder.after(static_cast<std::size_t>(law.solid), law.velocity, bar);
-    }
-    std::copy_n(bar, 3, tilde);
-    for (std::size_t k = 0; k < impulse.size(); ++k) {
-      const Constraint<Real>& law = node.contacts[k].law;
-      const Real bound = law.friction * impulse[k];
-      if (!(bound > Real(0))) continue;
-      recorder.before(tilde);
-      rub(law.normal, law.velocity, bound, tilde);
-      recorder.after(static_cast<std::size_t>(law.solid), law.velocity, tilde);
-    }
+    collide(AroundNode{node.laws}, corner, dt, bar, tilde, record(static_cast<std::size_t>(node.index), mass));
   }
 }
 

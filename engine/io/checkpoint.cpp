@@ -319,6 +319,7 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   }
   state.counters = head->counters;
   state.grid.build(occupied_blocks, state.topology);
+  state.list_sets();
   state.nodes.resize(state.grid.size());
   state.rows_touched.assign(state.grid.occupied_blocks().size(), 0);
   return {};

@@ -28,20 +28,20 @@ Real dot(const Real* a, const Real* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Returns the impulse over the node's mass that friction may draw on, m/s.
+/// Returns whether the solid acts. `impulse`: over the node's mass, what friction may draw on, m/s.
 template <class Real>
-[[gnu::always_inline]] inline Real constrain(Contact contact, const NodeContact<Real>& at, const Real* wall,
-                                             Real dt, Real* v) {
+[[gnu::always_inline]] inline bool constrain(Contact contact, const NodeContact<Real>& at, const Real* wall,
+                                             Real dt, Real* v, Real& impulse) {
   const Real* n = at.normal;
   const Real along = wall == nullptr ? dot(n, v) : dot(n, v) - dot(n, wall);
-  Real impulse = Real(0);
+  impulse = Real(0);
   switch (contact) {
     case Contact::kSticky:
-      if (!(at.distance < Real(0))) break;
+      if (!(at.distance < Real(0))) return false;
       for (int axis = 0; axis < 3; ++axis) v[axis] = wall == nullptr ? Real(0) : wall[axis];
       break;
     case Contact::kSlip:
-      if (!(at.distance < Real(0))) break;
+      if (!(at.distance < Real(0))) return false;
       for (int axis = 0; axis < 3; ++axis) v[axis] -= along * n[axis];
       impulse = std::abs(along);
       break;
@@ -50,13 +50,26 @@ template <class Real>
       // planes, and for curved walls off by the sagitta of a path of one cell at most.
       const Real allowed = std::min(at.distance, Real(0));
       const Real predicted = at.distance + dt * along;
-      if (!(predicted < allowed)) break;
+      if (!(predicted < allowed)) return false;
       impulse = (allowed - predicted) / dt;
       for (int axis = 0; axis < 3; ++axis) v[axis] += impulse * n[axis];
       break;
     }
   }
-  return impulse;
+  return true;
+}
+
+/// The same contact as a constraint of velocities.
+template <class Real>
+Constraint<Real> constraint_of(Contact contact, const NodeContact<Real>& at, const Real* wall, Real dt) {
+  Constraint<Real> made;
+  made.contact = contact;
+  made.distance = at.distance;
+  std::copy_n(at.normal, 3, made.normal);
+  if (wall != nullptr) std::copy_n(wall, 3, made.velocity);
+  made.bound = dot(made.normal, made.velocity);
+  if (contact == Contact::kSeparating) made.bound += (std::min(at.distance, Real(0)) - at.distance) / dt;
+  return made;
 }
 
 /// Coulomb: of a load along a surface, friction of at most `bound` bears this share.

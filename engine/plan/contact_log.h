@@ -32,8 +32,7 @@ struct ContactSums {
 
 /// Why a record is a type: where nothing is recorded it must not cost.
 struct NoContactRecorder {
-  void before(const void*) {}
-  void after(std::size_t, const void*, const void*) {}
+  void give(std::size_t, const void*, const void*) {}
 };
 
 /// Writes what changes the velocity of one node into the sums of its block.
@@ -41,21 +40,16 @@ struct ContactRecorder {
   ContactSums* sums;
   double mass;  ///< kg, of the node
   Vec3 x;       ///< m, where it is
-  Vec3 start = Vec3::Zero();
 
   template <class Real>
   static Vec3 vector(const Real* v) {
     return {double(v[0]), double(v[1]), double(v[2])};
   }
+  /// `wall` is null where the solid rests; `change` of the node's velocity.
   template <class Real>
-  void before(const Real* v) {
-    start = vector(v);
-  }
-  /// `wall` is null where the solid rests.
-  template <class Real>
-  void after(std::size_t solid, const Real* wall, const Real* v) {
+  void give(std::size_t solid, const Real* wall, const Real* change) {
     const Vec3 moves = wall == nullptr ? Vec3(0, 0, 0) : vector(wall);
-    sums[solid].add(x, mass * (vector(v) - start), moves);
+    sums[solid].add(x, mass * vector(change), moves);
   }
 };
 

@@ -29,7 +29,9 @@ struct StepLimits {
     double sound_speed;     ///< m/s
     double dilation_speed;  ///< sqrt((3 lambda + 2 mu)/rho), m/s: the pulse of a particle alone
   };
-  std::vector<Stiffness> sets;
+  // Of explicit steps alone:
+  std::vector<Stiffness> sets{};
+  double acceleration = 0.0;  ///< of all matter, m/s^2: what lies still may be falling when the step ends
 };
 
 /// How much memory a simulation may take, bytes; and what of it writing a frame takes, beside what lasts: the

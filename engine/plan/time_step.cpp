@@ -34,6 +34,7 @@ StepSize choose_step(const StepLimits& limits, const TransferChoice& transfer, d
     if (dt < step.dt) step = {dt, limit, dt};
   };
   if (counters.max_speed > 0.0) bound(limits.cfl * spacing / counters.max_speed, Limit::kVelocity);
+  if (limits.acceleration > 0.0) bound(std::sqrt(limits.cfl * spacing / limits.acceleration), Limit::kVelocity);
   if (counters.max_gradient > 0.0) bound(limits.strain / counters.max_gradient, Limit::kStrain);
   const double feedback = isolated_cells(transfer);
   for (const auto& set : limits.sets) {

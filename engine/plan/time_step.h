@@ -1,6 +1,8 @@
 // Repose: how long a step may be. Each limit has a name, and the name of the one that bound is reported, so
 // that a slow run says why it is slow:
-//   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, Table 2, has 1)
+//   velocity  no particle and no solid crosses more than `cfl` cells (Klar et al. 2016, Table 2, has 1), nor,
+//   in
+//             explicit steps, a particle that falls from rest
 //   sound     a compression wave crosses at most `sound` cells; measured limits are 1.0 to 1.2 (docs/math.md)
 //   isolated  a particle alone must not feed its own pulse (after Bai and Schroeder 2022):
 //             dt <= (dx / a) sqrt(2 (1 + s) / (h + s (h - D^-1))),   a^2 = (3 lambda + 2 mu)/rho,

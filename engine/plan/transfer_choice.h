@@ -26,10 +26,10 @@ inline constexpr std::int64_t kStepsBetweenMeasures = 4;
 
 /// The stencil and the transfer of a scene.
 struct TransferChoice {
-  int stencil = 0, transfer = 0;          ///< positions in the kernels' lists
-  double velocity_loss = 0.0;             ///< 1/s, of what particles have for themselves (flip, aflip)
-  std::optional<double> kept_velocity{};  ///< a share per step, in [0, 1], in its place
-  double kept_stretching = 0.0;           ///< share of stretching that RPIC tells, in [0, 1]
+  int stencil = 0, transfer = 0;            ///< positions in the kernels' lists
+  double velocity_loss = 0.0;               ///< 1/s, of what particles have for themselves (flip, aflip)
+  std::optional<double> kept_velocity{};    ///< a share per step, in [0, 1], in its place
+  double kept_stretching = 0.0;             ///< share of stretching that RPIC tells, in [0, 1]
   std::int64_t steps_between_measures = 1;  ///< of what particles have for themselves
 
   const StencilFigures& nodes() const { return kStencilFigures[static_cast<std::size_t>(stencil)]; }
@@ -38,8 +38,10 @@ struct TransferChoice {
   /// Whether particles store C.
   bool keeps_affine() const { return figures().affine != Affine::kNone; }
   /// Whether a step, after so many, measures what particles have for themselves; others hold what was found.
+  /// The first two do: what is found before C has come to fit the velocities would be held too long.
   bool measures_own(std::int64_t step) const {
-    return figures().keeps_velocity && step % steps_between_measures == 0;
+    const bool due = step == 0 || step % steps_between_measures == 1 % steps_between_measures;
+    return figures().keeps_velocity && due;
   }
   /// Share of it that is left after a step.
   double kept_over(double dt) const { return kept_velocity ? *kept_velocity : std::exp(-velocity_loss * dt); }

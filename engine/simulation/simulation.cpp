@@ -206,6 +206,14 @@ class SimulationOf final : public Simulation {
     }
   }
 
+  void watch_strain() {
+    if (warned_of_strain_) return;
+    if (auto warning = crushed_warning(state_, stepper_.threads())) {
+      warnings_.push_back(std::move(*warning));
+      warned_of_strain_ = true;
+    }
+  }
+
   Scene scene_;
   Target target_;
   IntegratorChoice integrator_;
@@ -215,7 +223,7 @@ class SimulationOf final : public Simulation {
   Stepper<Real> stepper_;
   std::optional<FailedParticle> failed_;
   std::vector<std::string> warnings_;
-  bool warned_of_speed_ = false;
+  bool warned_of_speed_ = false, warned_of_strain_ = false;
   bool sound_ = true;
 };
 
@@ -258,6 +266,7 @@ Result<FrameReport> SimulationOf<Real>::advance_frame(const StepCallback& callba
     clock_.end_frame(counters);
     if (auto ended = unless_memory_ends([&] { return stepper_.end_frame(state_); }); !ended)
       return refuse(ended.error());
+    watch_strain();
   }
   frame.frame = counters.frame;
   frame.time = counters.time;

@@ -1,14 +1,18 @@
 #include "engine/simulation/warnings.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 
 #include "engine/base/wording.h"
 #include "engine/effect/thin_solid.h"
 #include "engine/plan/time_step.h"
 #include "engine/simulation/diagnostics.h"
+#include "kernels/material/hencky.h"
 
 namespace repose {
 namespace {
@@ -167,9 +171,52 @@ std::optional<std::string> speed_warning(const StepPlan<Real>& plan, const State
   return "particle " + std::to_string(fastest.set->id[fastest.particle]) + " of '" + fastest.set->name + text;
 }
 
+namespace {
+
+/// How many particles of a block have come to the least stretch but for some rounding.
+template <class Real>
+std::uint64_t crushed(const ParticleSet<Real>& set, std::size_t occupied) {
+  const double least = std::log(1.05 * static_cast<double>(kSmallestStretch<Real>));
+  std::uint64_t count = 0;
+  for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
+    double eps[kStrainComponents];  // xx xy xz yy yz zz
+    for (std::size_t k = 0; k < kStrainComponents; ++k) eps[k] = double(set.strain[k][p]);
+    const double off = eps[1] * eps[1] + eps[2] * eps[2] + eps[4] * eps[4];
+    const double square = eps[0] * eps[0] + eps[3] * eps[3] + eps[5] * eps[5] + 2.0 * off;
+    if (square < least * least) continue;
+    Mat3 strain;
+    strain << eps[0], eps[1], eps[2], eps[1], eps[3], eps[4], eps[2], eps[4], eps[5];
+    const Eigen::SelfAdjointEigenSolver<Mat3> of(strain, Eigen::EigenvaluesOnly);
+    count += of.eigenvalues().minCoeff() <= least ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+template <class Real>
+std::optional<std::string> crushed_warning(const State<Real>& state, Threads& threads) {
+  std::vector<std::uint64_t> blocks(state.grid.occupied_blocks().size());
+  for (const auto& set : state.sets) {
+    threads.for_each(blocks.size(), [&](std::size_t occupied) { blocks[occupied] = crushed(set, occupied); });
+    const std::uint64_t all = std::accumulate(blocks.begin(), blocks.end(), std::uint64_t{0});
+    if (all == 0) continue;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "%llu of %zu particles of '%s' are pressed to %.0e of their thickness, and no strain is told "
+                  "beyond that; stiffer matter, or slower motion, keeps its volume",
+                  static_cast<unsigned long long>(all), set.count, set.name.c_str(),
+                  static_cast<double>(kSmallestStretch<Real>));
+    return text;
+  }
+  return std::nullopt;
+}
+
 template std::vector<std::string> seeding_warnings(const std::vector<Solid>&, const State<float>&, Threads&);
 template std::vector<std::string> seeding_warnings(const std::vector<Solid>&, const State<double>&, Threads&);
 template std::optional<std::string> speed_warning(const StepPlan<float>&, const State<float>&);
 template std::optional<std::string> speed_warning(const StepPlan<double>&, const State<double>&);
+template std::optional<std::string> crushed_warning(const State<float>&, Threads&);
+template std::optional<std::string> crushed_warning(const State<double>&, Threads&);
 
 }  // namespace repose

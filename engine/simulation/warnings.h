@@ -32,4 +32,8 @@ std::vector<std::string> seeding_warnings(const std::vector<Solid>& solids, cons
 template <class Real>
 std::optional<std::string> speed_warning(const StepPlan<Real>& plan, const State<Real>& state);
 
+/// Particles that are pressed as thin as a strain can say (docs/math.md, section 32), or nothing.
+template <class Real>
+std::optional<std::string> crushed_warning(const State<Real>& state, Threads& threads);
+
 }  // namespace repose

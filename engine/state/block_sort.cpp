@@ -13,6 +13,9 @@
 namespace repose {
 namespace {
 
+/// Particles of a set from which on its blocks are shared out among threads; else whole sets are.
+constexpr std::size_t kWorthThreads = 8192;
+
 /// Set in the cell of a particle that leaves its block.
 constexpr std::uint8_t kMoves = 128;
 static_assert(kBases <= kMoves);
@@ -75,12 +78,37 @@ void sort_cells(std::uint64_t* keys, const std::uint32_t* ends) {
 }  // namespace
 
 template <class Real>
-void BlockSort<Real>::classify(const ParticleSet<Real>& set, std::size_t occupied, const Locator<Real>& locator,
+const typename BlockSort<Real>::OldOccupied* BlockSort<Real>::Buffers::find(std::size_t occupied) const {
+  if (everywhere) return &old[occupied];
+  const auto at = std::lower_bound(held.begin(), held.end(), occupied);
+  return at == held.end() || *at != occupied ? nullptr : &old[static_cast<std::size_t>(at - held.begin())];
+}
+
+template <class Real>
+void BlockSort<Real>::prepare(const ParticleSet<Real>& set, std::size_t old_count, Buffers& buffers) {
+  buffers.held.clear();
+  for (std::uint32_t occupied = 0; occupied < old_count; ++occupied) {
+    if (set.begin[occupied] < set.begin[occupied + 1]) buffers.held.push_back(occupied);
+  }
+  buffers.everywhere = buffers.held.size() == old_count;
+  buffers.old.resize(buffers.held.size());
+  // As much room as the channels have: a channel and its spare change places.
+  const std::size_t count = set.count, room = set.id.capacity();
+  buffers.cell.reserve_uninitialized(count, room);
+  buffers.spare.reserve_uninitialized(count, room);
+  buffers.permutation.reserve_uninitialized(count, room);
+  buffers.arrivals.reserve_uninitialized(count / 8, room / 8);
+}
+
+/// `held`: a position in the blocks that the set holds.
+template <class Real>
+void BlockSort<Real>::classify(const ParticleSet<Real>& set, std::size_t held, const Locator<Real>& locator,
                                Buffers& buffers) const {
+  const std::size_t occupied = buffers.held[held];
   const std::size_t first = set.begin[occupied], last = set.begin[occupied + 1];
   std::uint8_t* const cells = buffers.cell.data();
   locate(set, first, last, locator, cells);
-  OldOccupied& old = buffers.old[occupied];
+  OldOccupied& old = buffers.old[held];
   Departures& departures = old.departures;
   departures.fill(0);
   old.in_order = in_order(cells, set.id.data(), first, last);
@@ -105,8 +133,9 @@ bool BlockSort<Real>::same_occupied(const State<Real>& state) {
   const std::size_t all = state.grid.occupied_blocks().size();
   weight_.assign(all, 0);
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
-    for (std::size_t occupied = 0; occupied < all; ++occupied) {
-      const Departures& departures = buffers_[k].old[occupied].departures;
+    for (std::size_t held = 0; held < buffers_[k].held.size(); ++held) {
+      const std::size_t occupied = buffers_[k].held[held];
+      const Departures& departures = buffers_[k].old[held].departures;
       const auto& begin = state.sets[k].begin;
       weight_[occupied] += begin[occupied + 1] - begin[occupied] - departures[kNeighbours];
       if (departures[kNeighbours] == 0) continue;
@@ -133,20 +162,23 @@ bool BlockSort<Real>::update_grid(State<Real>& state) {
     old_blocks_[occupied] = state.grid.occupied_coordinates(occupied);
   }
   if (!same) {
-    new_blocks_.clear();
-    for (std::size_t occupied = 0; occupied < all; ++occupied) {
-      std::uint32_t receives = 0;
-      for (std::size_t k = 0; k < state.sets.size(); ++k) {
-        const Departures& departures = buffers_[k].old[occupied].departures;
+    receives_.assign(all, 0);
+    for (std::size_t k = 0; k < state.sets.size(); ++k) {
+      for (std::size_t held = 0; held < buffers_[k].held.size(); ++held) {
+        const std::size_t occupied = buffers_[k].held[held];
+        const Departures& departures = buffers_[k].old[held].departures;
         const auto& begin = state.sets[k].begin;
-        if (begin[occupied + 1] - begin[occupied] > departures[kNeighbours]) receives |= 1u << kSelf;
+        if (begin[occupied + 1] - begin[occupied] > departures[kNeighbours]) receives_[occupied] |= 1u << kSelf;
         for (std::size_t n = 0; n < kNeighbours; ++n) {
-          if (departures[n + 1] > departures[n]) receives |= 1u << n;
+          if (departures[n + 1] > departures[n]) receives_[occupied] |= 1u << n;
         }
       }
+    }
+    new_blocks_.clear();
+    for (std::size_t occupied = 0; occupied < all; ++occupied) {
       const Index3& block = old_blocks_[occupied];
       for (int n = 0; n < kNeighbours; ++n) {
-        if ((receives >> n & 1u) == 0) continue;
+        if ((receives_[occupied] >> n & 1u) == 0) continue;
         const Index3 away = offset_of(n);
         new_blocks_.push_back({block[0] + away[0], block[1] + away[1], block[2] + away[2]});
       }
@@ -173,37 +205,74 @@ void BlockSort<Real>::for_each_arrival(const State<Real>& state, std::size_t k, 
     const std::int32_t from = neighbours[kNeighbours - 1 - n];
     const std::int32_t source = from < 0 ? -1 : source_[static_cast<std::size_t>(from)];
     if (source < 0) continue;
-    const Departures& departures = buffers_[k].old[static_cast<std::size_t>(source)].departures;
+    const OldOccupied* const old = buffers_[k].find(static_cast<std::size_t>(source));
+    if (old == nullptr) continue;
+    const Departures& departures = old->departures;
     if (departures[n] == departures[n + 1]) continue;
     const std::size_t base = state.sets[k].begin[static_cast<std::size_t>(source)];
     visit(base + departures[n], base + departures[n + 1]);
   }
 }
 
+/// Which new occupied blocks get particles of set k.
+template <class Real>
+void BlockSort<Real>::find_reached(const State<Real>& state, std::size_t k) {
+  Buffers& buffers = buffers_[k];
+  const std::size_t all = state.grid.occupied_blocks().size();
+  const bool alone = state.sets.size() == 1;
+  buffers.reaches.assign(all, alone ? 1 : 0);
+  const auto reach = [&](const Index3& coordinates) {
+    const std::int32_t block = state.grid.find_block(state.topology.wrap(coordinates));
+    const std::int32_t occupied =
+        block < 0 ? -1 : state.grid.occupied_of_block(static_cast<std::size_t>(block));
+    if (occupied >= 0) buffers.reaches[static_cast<std::size_t>(occupied)] = 1;
+  };
+  for (std::size_t held = 0; held < buffers.held.size() && !alone; ++held) {
+    const std::size_t from = buffers.held[held];
+    const Index3& block = old_blocks_[from];
+    const Departures& departures = buffers.old[held].departures;
+    const auto& begin = state.sets[k].begin;
+    if (begin[from + 1] - begin[from] > departures[kNeighbours]) reach(block);
+    for (int n = 0; n < kNeighbours; ++n) {
+      const auto at = static_cast<std::size_t>(n);
+      if (departures[at] == departures[at + 1]) continue;
+      const Index3 away = offset_of(n);
+      reach({block[0] + away[0], block[1] + away[1], block[2] + away[2]});
+    }
+  }
+  buffers.reached.clear();
+  for (std::uint32_t occupied = 0; occupied < all; ++occupied) {
+    if (buffers.reaches[occupied] != 0) buffers.reached.push_back(occupied);
+  }
+}
+
 /// Gives each new occupied block its share of the range.
 template <class Real>
-void BlockSort<Real>::share_out(const State<Real>& state, std::size_t k, Threads& threads) {
+template <class ForEach>
+void BlockSort<Real>::share_out(const State<Real>& state, std::size_t k, const ForEach& for_each) {
   Buffers& buffers = buffers_[k];
   const std::size_t all = state.grid.occupied_blocks().size();
   std::vector<std::uint32_t>&begin = buffers.begin, &arrivals = buffers.arrivals_begin;
   begin.assign(all + 1, 0);
   arrivals.assign(all + 1, 0);
-  threads.for_each(
-      all,
-      [&](std::size_t occupied) {
+  for_each(
+      buffers.reached.size(),
+      [&](std::size_t i) {
+        const std::size_t occupied = buffers.reached[i];
         for_each_arrival(state, k, occupied, [&](std::size_t first, std::size_t last) {
           arrivals[occupied + 1] += static_cast<std::uint32_t>(last - first);
         });
-        const std::int32_t source = source_[state.grid.block_of_occupied(occupied)];
         begin[occupied + 1] = arrivals[occupied + 1];
-        if (source < 0) return;
-        const auto old = static_cast<std::size_t>(source);
+        const std::int32_t source = source_[state.grid.block_of_occupied(occupied)];
+        const OldOccupied* const old = source < 0 ? nullptr : buffers.find(static_cast<std::size_t>(source));
+        if (old == nullptr) return;
+        const auto here = static_cast<std::size_t>(source);
         begin[occupied + 1] +=
-            state.sets[k].begin[old + 1] - state.sets[k].begin[old] - buffers.old[old].departures[kNeighbours];
+            state.sets[k].begin[here + 1] - state.sets[k].begin[here] - old->departures[kNeighbours];
       },
       64);
   const std::uint32_t most = *std::max_element(begin.begin(), begin.end());
-  for (auto& keys : keys_) {  // whichever thread meets the fullest block
+  for (auto& keys : keys_) {  // whichever thread meets the fullest block; they have enough for small sets
     if (keys.size() < most) keys.resize(most + most / 8);
   }
   for (std::size_t occupied = 0; occupied < all; ++occupied) {
@@ -221,11 +290,10 @@ void BlockSort<Real>::sort_occupied(const State<Real>& state, std::size_t k, std
   const std::int32_t source = source_[state.grid.block_of_occupied(occupied)];
   std::size_t first = 0, last = 0;  // who was here before
   bool in_order = false;
-  if (source >= 0) {
-    const auto old = static_cast<std::size_t>(source);
-    first = state.sets[k].begin[old];
-    last = state.sets[k].begin[old + 1];
-    in_order = buffers.old[old].in_order;
+  if (const OldOccupied* old = source < 0 ? nullptr : buffers.find(static_cast<std::size_t>(source))) {
+    first = state.sets[k].begin[static_cast<std::size_t>(source)];
+    last = state.sets[k].begin[static_cast<std::size_t>(source) + 1];
+    in_order = old->in_order;
   }
   std::uint32_t* const place = buffers.permutation.data() + begin;
   if (in_order && buffers.arrivals_begin[occupied] == buffers.arrivals_begin[occupied + 1]) {
@@ -276,22 +344,24 @@ void BlockSort<Real>::collect(const State<Real>& state, std::size_t k, std::size
 }
 
 template <class Real>
-void BlockSort<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Threads& threads,
+template <class ForEach>
+void BlockSort<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, const ForEach& for_each,
                                     const Locator<Real>& locator) const {
-  const std::size_t all = buffers.begin.size() - 1, room = buffers.arrivals.size();
+  const std::vector<std::uint32_t>& reached = buffers.reached;
+  const std::size_t all = reached.size(), room = buffers.arrivals.size();
   const std::uint32_t* const from = buffers.permutation.data();
   const auto move = [&](const auto* old, auto* moved, const auto& value) {
-    threads.for_each(
+    for_each(
         all,
-        [&](std::size_t occupied) {
+        [&](std::size_t i) {
           // What the next block but one waits for from far away; what is near comes by itself.
-          const std::size_t ahead = std::min(occupied + 2, all - 1);
+          const std::size_t ahead = reached[std::min(i + 2, all - 1)];
           const std::size_t last = std::min<std::size_t>(room, buffers.arrivals_begin[ahead + 1]);
-          for (std::size_t i = buffers.arrivals_begin[ahead]; i < last; ++i) {
-            __builtin_prefetch(old + buffers.arrivals[i]);
+          for (std::size_t at = buffers.arrivals_begin[ahead]; at < last; ++at) {
+            __builtin_prefetch(old + buffers.arrivals[at]);
           }
-          const std::size_t end = buffers.begin[occupied + 1];
-          for (std::size_t p = buffers.begin[occupied]; p < end; ++p) moved[p] = value(old[from[p]]);
+          const std::size_t end = buffers.begin[reached[i] + 1];
+          for (std::size_t p = buffers.begin[reached[i]]; p < end; ++p) moved[p] = value(old[from[p]]);
         },
         8);
   };
@@ -314,32 +384,58 @@ void BlockSort<Real>::move_channels(ParticleSet<Real>& set, Buffers& buffers, Th
   swap(set.id, buffers.permutation);
 }
 
+/// Brings the particles of set k to the blocks of the new grid.
+template <class Real>
+template <class ForEach>
+void BlockSort<Real>::place(State<Real>& state, std::size_t k, const ForEach& for_each,
+                            const Locator<Real>& locator) {
+  Buffers& buffers = buffers_[k];
+  find_reached(state, k);
+  share_out(state, k, for_each);
+  for_each(
+      buffers.reached.size(), [&](std::size_t i) { sort_occupied(state, k, buffers.reached[i]); }, 1);
+  move_channels(state.sets[k], buffers, for_each, locator);
+  state.sets[k].begin.swap(buffers.begin);
+}
+
 template <class Real>
 bool BlockSort<Real>::sort(State<Real>& state, Threads& threads, const Ownership& ownership) {
   const Locator<Real> locator(ownership);
   const std::size_t sets = state.sets.size(), old_count = state.grid.occupied_blocks().size();
+  const auto by_all = [&threads](std::size_t n, const auto& body, std::size_t grain) {
+    threads.for_each(n, body, grain);
+  };
+  const auto by_one = [](std::size_t n, const auto& body, std::size_t) {
+    for (std::size_t i = 0; i < n; ++i) body(i);
+  };
   buffers_.resize(sets);
   keys_.resize(static_cast<std::size_t>(threads.count()));
+  small_.clear();
   for (std::size_t k = 0; k < sets; ++k) {
-    Buffers& buffers = buffers_[k];
-    buffers.old.resize(old_count);
-    // As much room as the channels have: a channel and its spare change places.
-    const std::size_t count = state.sets[k].count, room = state.sets[k].id.capacity();
-    buffers.cell.reserve_uninitialized(count, room);
-    buffers.spare.reserve_uninitialized(count, room);
-    buffers.permutation.reserve_uninitialized(count, room);
-    buffers.arrivals.reserve_uninitialized(count / 8, room / 8);
-    threads.for_each(old_count,
-                     [&](std::size_t occupied) { classify(state.sets[k], occupied, locator, buffers); });
+    prepare(state.sets[k], old_count, buffers_[k]);
+    if (sets > 1 && state.sets[k].count < kWorthThreads) {
+      small_.push_back(k);
+      continue;
+    }
+    by_all(
+        buffers_[k].held.size(), [&](std::size_t held) { classify(state.sets[k], held, locator, buffers_[k]); },
+        1);
   }
+  for (auto& keys : keys_) {
+    if (!small_.empty() && keys.size() < kWorthThreads) keys.resize(kWorthThreads);
+  }
+  threads.for_each(small_.size(), [&](std::size_t i) {
+    Buffers& buffers = buffers_[small_[i]];
+    for (std::size_t held = 0; held < buffers.held.size(); ++held)
+      classify(state.sets[small_[i]], held, locator, buffers);
+  });
   const bool new_grid = update_grid(state);
   const std::size_t new_count = state.grid.occupied_blocks().size();
   for (std::size_t k = 0; k < sets; ++k) {
-    share_out(state, k, threads);
-    threads.for_each(new_count, [&](std::size_t occupied) { sort_occupied(state, k, occupied); });
-    move_channels(state.sets[k], buffers_[k], threads, locator);
-    state.sets[k].begin.swap(buffers_[k].begin);
+    if (sets == 1 || state.sets[k].count >= kWorthThreads) place(state, k, by_all, locator);
   }
+  threads.for_each(small_.size(), [&](std::size_t i) { place(state, small_[i], by_one, locator); });
+  state.list_sets();
   state.nodes.resize(state.grid.size());
   state.rows_touched.assign(new_count, 0);
   state.counters.sort_due = 0;
@@ -352,11 +448,14 @@ bool BlockSort<Real>::sort(State<Real>& state, Threads& threads, const Ownership
 template <class Real>
 std::size_t BlockSort<Real>::bytes() const {
   std::size_t sum = source_.capacity() * sizeof(std::int32_t) + weight_.capacity() * sizeof(std::uint32_t) +
+                    receives_.capacity() * sizeof(std::uint32_t) +
                     (old_blocks_.capacity() + new_blocks_.capacity()) * sizeof(Index3);
   for (const Buffers& buffers : buffers_) {
     sum += buffers.cell.bytes() + buffers.spare.bytes() + buffers.permutation.bytes() +
            buffers.arrivals.bytes() + buffers.arrivals_begin.capacity() * sizeof(std::uint32_t) +
-           buffers.old.capacity() * sizeof(OldOccupied) + buffers.begin.capacity() * sizeof(std::uint32_t);
+           buffers.old.capacity() * sizeof(OldOccupied) + buffers.reaches.capacity() +
+           (buffers.held.capacity() + buffers.reached.capacity() + buffers.begin.capacity()) *
+               sizeof(std::uint32_t);
   }
   return sum;
 }

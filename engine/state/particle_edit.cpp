@@ -200,6 +200,7 @@ Result<bool> apply_edit(ParticleEdit<Real> edit, State<Real>& state, const Owner
     edit_set(state.sets[k], edit.sets[k], plan_moves(state.sets[k], edit.sets[k], state.grid, old_occupied),
              edit.threads);
   }
+  state.list_sets();
   state.counters.sort_due = 1;
   return new_grid;
 }

@@ -48,6 +48,7 @@ void place_in_blocks(State<Real>& state, std::vector<std::vector<Index3>> cells,
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     sort_by_occupied(state.sets[k], state.grid, std::move(cells[k]));
   }
+  state.list_sets();
   state.counters.sort_due = 1;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/base/vector.h"
@@ -30,6 +31,39 @@ struct Ledger {
   bool open() const { return !emitted.empty() || !removed.empty(); }
 };
 
+/// Which sets have particles in an occupied block, so that scenes of many bodies do not ask each set in each
+/// block.
+class SetsOfBlocks {
+ public:
+  /// Of sets whose particles are in blocks.
+  template <class Sets>
+  void list(const Sets& sets, std::size_t occupied_blocks) {
+    begin_.assign(occupied_blocks + 2, 0);
+    const auto for_each_held = [&](const auto& visit) {
+      for (std::size_t k = 0; k < sets.size(); ++k) {
+        const std::vector<std::uint32_t>& begin = sets[k].begin;
+        for (std::size_t b = 0; b < occupied_blocks; ++b) {
+          if (begin[b] < begin[b + 1]) visit(k, b);
+        }
+      }
+    };
+    for_each_held([&](std::size_t, std::size_t b) { ++begin_[b + 2]; });
+    for (std::size_t b = 2; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
+    sets_.resize(begin_.back());
+    for_each_held(
+        [&](std::size_t k, std::size_t b) { sets_[begin_[b + 1]++] = static_cast<std::uint32_t>(k); });
+  }
+
+  /// Ascending.
+  std::span<const std::uint32_t> of(std::size_t occupied) const {
+    return {sets_.data() + begin_[occupied], sets_.data() + begin_[occupied + 1]};
+  }
+  std::size_t bytes() const { return (begin_.capacity() + sets_.capacity()) * sizeof(std::uint32_t); }
+
+ private:
+  std::vector<std::uint32_t> begin_, sets_;
+};
+
 template <class Real>
 struct State {
   double spacing = 0.0;          ///< dx, m
@@ -48,6 +82,9 @@ struct State {
   SparseNodeField<Real> after_friction;     ///< mass and v-tilde, in blocks where there is friction
   LastMotion<Real> last_motion;             ///< where steps are implicit; saved
   std::vector<std::uint64_t> rows_touched;  ///< per occupied block: arena rows that its particles reach
+  SetsOfBlocks sets_of_blocks;              ///< follows `begin` of the sets
+
+  void list_sets() { sets_of_blocks.list(sets, grid.occupied_blocks().size()); }
 
   std::size_t particles() const {
     std::size_t sum = 0;
@@ -90,7 +127,8 @@ struct State {
     return sum;
   }
   std::size_t grid_bytes() const {
-    return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + last_motion.bytes() + grid.bytes();
+    return nodes.bytes() + before_forces.bytes() + after_friction.bytes() + last_motion.bytes() + grid.bytes() +
+           sets_of_blocks.bytes();
   }
 };
 

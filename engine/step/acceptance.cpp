@@ -44,32 +44,66 @@ void Acceptance<Real>::bound(const BlockSweep<Real>& sweep, std::size_t block) {
   sweep.kernels().node.bound(moving_.of_block(sweep.state(), block), bounds_[block]);
 }
 
+namespace {
+
+template <class Real>
+FailedParticle particle_at(const State<Real>& state, const ParticleSet<Real>& set, std::size_t occupied,
+                           std::size_t p) {
+  FailedParticle failed;
+  failed.set = set.name;
+  failed.id = set.id[p];
+  failed.block = state.grid.occupied_coordinates(occupied);
+  failed.position = to_triple(state.world(failed.block, set, p));
+  failed.velocity = failed.trial_velocity =
+      to_triple(Vec3(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p])));
+  failed.determinant = 1.0;
+  return failed;
+}
+
+/// Calls visit(set, occupied block, p).
+template <class Real, class Visit>
+void visit_particles(const State<Real>& state, Visit visit) {
+  for (const auto& set : state.sets) {
+    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) visit(set, occupied, p);
+    }
+  }
+}
+
+}  // namespace
+
 /// By its velocity and what its C tells nodes a cell away; one that is not a number comes first.
 template <class Real>
 FailedParticle fastest_particle(const State<Real>& state, std::string what, std::string advice) {
-  FailedParticle failed;
+  FailedParticle fastest;
   double most = -1.0;
-  for (const auto& set : state.sets) {
-    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
-      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
-        const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
-        double size = v.squaredNorm();
-        for (const auto& c : set.affine)
-          size += !set.keeps_affine ? 0.0 : double(c[p]) * double(c[p]) * state.spacing * state.spacing;
-        if (size <= most) continue;
-        most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
-        failed.set = set.name;
-        failed.id = set.id[p];
-        failed.block = state.grid.occupied_coordinates(occupied);
-        failed.position = to_triple(state.world(failed.block, set, p));
-        failed.velocity = failed.trial_velocity = to_triple(v);
-      }
-    }
-  }
-  failed.determinant = 1.0;
-  failed.reason = std::move(what);
-  failed.advice = std::move(advice);
-  return failed;
+  visit_particles(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
+    double size = 0.0;
+    for (const auto& v : set.velocity) size += double(v[p]) * double(v[p]);
+    for (const auto& c : set.affine)
+      size += !set.keeps_affine ? 0.0 : double(c[p]) * double(c[p]) * state.spacing * state.spacing;
+    if (size <= most) return;
+    most = std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
+    fastest = particle_at(state, set, occupied, p);
+  });
+  fastest.reason = std::move(what);
+  fastest.advice = std::move(advice);
+  return fastest;
+}
+
+template <class Real>
+std::optional<FailedParticle> spoilt_particle(const State<Real>& state) {
+  std::optional<FailedParticle> found;
+  visit_particles(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
+    if (found) return;
+    bool finite = true;
+    set.for_each_real([&](const AlignedArray<Real>& channel) { finite = finite && std::isfinite(channel[p]); });
+    if (finite) return;
+    found = particle_at(state, set, occupied, p);
+    found->reason = "has a value that is not finite";
+    found->advice = "go on from an earlier checkpoint";
+  });
+  return found;
 }
 
 template <class Real>
@@ -159,9 +193,9 @@ FailedParticle Acceptance<Real>::failure(const OccupiedBlock<Real>& block, const
   failed.position = to_triple(state.world(failed.block, offset));
   failed.determinant = map.determinant();
   const bool finite = to_vec3(failed.trial_velocity).allFinite() && std::isfinite(failed.determinant);
-  failed.reason = !finite                     ? "is not finite"
-                  : failed.determinant <= 0.0 ? "would be turned inside out"
-                                              : "would move over a cell";
+  const double along = to_vec3(failed.trial_velocity).cwiseAbs().maxCoeff();
+  const bool far = along * static_cast<double>(chunk.dt) > state.spacing && failed.determinant > 0.0;
+  failed.reason = !finite ? "is not finite" : far ? "would move over a cell" : "would be turned inside out";
   failed.advice = "smaller time.sound or a finer grid.spacing may help";
   return failed;
 }
@@ -170,5 +204,7 @@ template class Acceptance<float>;
 template class Acceptance<double>;
 template FailedParticle fastest_particle(const State<float>&, std::string, std::string);
 template FailedParticle fastest_particle(const State<double>&, std::string, std::string);
+template std::optional<FailedParticle> spoilt_particle(const State<float>&);
+template std::optional<FailedParticle> spoilt_particle(const State<double>&);
 
 }  // namespace repose

@@ -47,5 +47,8 @@ class Acceptance {
 /// The particle for whose sake no step is short enough; `what` it is, such as "is too fast for any step".
 template <class Real>
 FailedParticle fastest_particle(const State<Real>& state, std::string what, std::string advice);
+/// The first particle that has a value which is not finite, if any does.
+template <class Real>
+std::optional<FailedParticle> spoilt_particle(const State<Real>& state);
 
 }  // namespace repose

@@ -39,10 +39,9 @@ void EnergyWatch<Real>::sum_block(const State<Real>& state, std::size_t occupied
   const Vec3 corner = state.world(block, std::array<double, 3>{0, 0, 0});
   const Vec3 up = -alarm_->gravity;
   const double x_up = up[0] * state.spacing, y_up = up[1] * state.spacing, z_up = up[2] * state.spacing;
-  for (std::size_t k = 0; k < state.sets.size(); ++k) {
+  for (const std::size_t k : state.sets_of_blocks.of(occupied)) {
     const ParticleSet<Real>& set = state.sets[k];
     const std::size_t first = set.begin[occupied], last = set.begin[occupied + 1];
-    if (first == last) continue;
     const Real *const u = set.velocity[0].data(), *const v = set.velocity[1].data(),
                       *const w = set.velocity[2].data();
     const Real *const x = set.position[0].data(), *const y = set.position[1].data(),
@@ -71,19 +70,23 @@ void EnergyWatch<Real>::sum_block(const State<Real>& state, std::size_t occupied
           }
         },
         alarm_->laws[k]);
+    Sums of_set;
+    const double mass = set.particle_mass, count = static_cast<double>(last - first);
+    const double inertia = 0.5 * mass * alarm_->affine_inertia;
     for (std::size_t n = 0; set.keeps_affine && n < kAffineComponents; ++n) {
       const Real* const c = set.affine[n].data();
       double sum = 0.0;
       for (std::size_t p = first; p < last; ++p) sum += double(c[p]) * double(c[p]);
       affine += sum;
+      for (std::size_t p = first; begun > 0.0 && p < last; ++p) {
+        if (set.id[p] >= next_id_) newcomers += inertia * double(c[p]) * double(c[p]);
+      }
     }
-    Sums of_set;
-    const double mass = set.particle_mass, count = static_cast<double>(last - first);
     of_set.any = true;
     of_set.matter.mass = mass * count;
     of_set.matter.kinetic = 0.5 * mass * square;
     of_set.momentum = mass * Vec3(along[0], along[1], along[2]);
-    of_set.affine = 0.5 * mass * alarm_->affine_inertia * affine;
+    of_set.affine = inertia * affine;
     of_set.elastic = set.particle_volume * elastic;
     of_set.potential = mass * (count * up.dot(corner) + height);
     of_set.begun = begun;

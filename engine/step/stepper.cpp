@@ -176,6 +176,7 @@ bool Stepper<Real>::solve(StepReport& report) {
   report.implicit = implicit_->solve();
   if (!solved(report.implicit->newton.end)) {
     report.refuse(unsolved_text(*report.implicit));
+    if (report.implicit->newton.end == NewtonEnd::kUndefined) report.failed = spoilt_particle(sweep_.state());
     return false;
   }
   const PhaseTimer timer(profile_, Phase::kNodes);

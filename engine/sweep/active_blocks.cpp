@@ -17,7 +17,8 @@ constexpr double kPatience = 5.0;
 template <class Real>
 std::uint32_t particles_of(const State<Real>& state, std::size_t occupied) {
   std::uint32_t sum = 0;
-  for (const auto& set : state.sets) sum += set.begin[occupied + 1] - set.begin[occupied];
+  for (const std::size_t k : state.sets_of_blocks.of(occupied))
+    sum += state.sets[k].begin[occupied + 1] - state.sets[k].begin[occupied];
   return sum;
 }
 

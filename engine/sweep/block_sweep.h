@@ -45,7 +45,7 @@ struct OccupiedBlock {
   template <class Visit>
   void for_each_chunk(Visit visit) {
     const Vec3 origin = state.world(state.grid.occupied_coordinates(occupied), {0.0, 0.0, 0.0});
-    for (std::size_t k = 0; k < state.sets.size(); ++k) {
+    for (const std::size_t k : state.sets_of_blocks.of(occupied)) {
       ParticleSet<Real>& set = state.sets[k];
       const std::size_t end = set.begin[occupied + 1];
       for (std::size_t first = set.begin[occupied]; first < end; first += kChunk) {
@@ -127,8 +127,8 @@ class BlockSweep {
   /// Whether somebody wishes that the step be left.
   bool interrupted() const { return wish_.said(); }
 
-  /// Calls body(OccupiedBlock&) for the occupied blocks that tell the nodes, colour by colour. Where the step is
-  /// to be left, colours are left out; whoever goes on with the sums must ask first.
+  /// Calls body(OccupiedBlock&) for the occupied blocks that tell the nodes, colour by colour. Where the step
+  /// is to be left, colours are left out; whoever goes on with the sums must ask first.
   template <class Body>
   void over_scattering(Body body) {
     for (const auto& occupied : active_.scatter) {

@@ -103,7 +103,8 @@ struct DruckerPrager {
     const N dg = fma(N(c.yield_slope), t, n);
     const N tiny(std::numeric_limits<T>::min());
     const N kept = one - max(dg, zero) / max(n, tiny);  // 1 in case I, 1 - dg/n in case III
-    const auto opened = t >= zero;
+    // What is not a number has not opened either, or nobody would see it again.
+    const auto opened = (t >= zero) & (n <= N(std::numeric_limits<T>::max()));
     const auto inside = dg <= zero;
     const Sym3<N> yielded = plus_identity(kept * e, mean);
     const Sym3<N> nothing{zero, zero, zero, zero, zero, zero};

@@ -1,8 +1,8 @@
 // Repose: the Hencky elastic solid.
 //
-//   strain energy   psi = mu eps : eps + (lambda/2) tr(eps)^2,   eps = log(b)/2, b = F F^T   (Klar et al. 2016,
-//   eq. 25) Kirchhoff       tau = d psi / d eps = 2 mu eps + lambda tr(eps) I                        (eq. 26,
-//   with P F^T = tau)
+//   strain energy   psi = mu eps : eps + (lambda/2) tr(eps)^2,   eps = log(b)/2,   b = F F^T
+//   Kirchhoff       tau = d psi / d eps = 2 mu eps + lambda tr(eps) I
+// (Klar et al. 2016, eqs. 25 and 26, with P F^T = tau)
 //
 // The strain is stored, not F: tau is linear in it, it needs 6 numbers, and no step size is baked into it.
 // Along one axis tau/s has its maximum at a stretch of e and softens beyond: not a law for rubber bands.
@@ -50,6 +50,10 @@ struct HenckyConstants {
       : mu(static_cast<Real>(elasticity.mu())), lambda(static_cast<Real>(elasticity.lambda())) {}
 };
 
+/// Singular values of F below this are taken as this: a crushed particle keeps a finite strain.
+template <class T>
+inline constexpr T kSmallestStretch = sizeof(T) == 4 ? T(1e-3) : T(1e-4);
+
 }  // namespace repose
 #endif
 
@@ -67,10 +71,6 @@ struct HenckyConstants {
 HWY_BEFORE_NAMESPACE();
 namespace repose {
 namespace HWY_NAMESPACE {
-
-/// Singular values of F below this are taken as this: a crushed particle keeps a finite strain.
-template <class T>
-inline constexpr T kSmallestStretch = sizeof(T) == 4 ? T(1e-3) : T(1e-4);
 
 /// Elastic trial strain of the step: b' = (I + dt grad v) b (I + dt grad v)^T (Klar et al. 2016, eq. 16).
 template <class N>

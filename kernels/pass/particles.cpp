@@ -58,9 +58,14 @@ std::size_t first_failed(const T* const velocity[3], const T* const gradient[9],
     for (int k = 0; k < 9; ++k) {
       map.m[k / 3][k % 3] = step * P::load_first(gradient[k] + first, lanes) + (k % 4 == 0 ? one : zero);
     }
-    // False for a NaN; an infinite entry makes the determinant a NaN or infinite.
-    const P volume_ratio = determinant(map);
-    auto good = (volume_ratio > zero) & (volume_ratio <= P(std::numeric_limits<T>::max()));
+    // False for a NaN; an infinite entry makes the determinant a NaN or infinite. Where two axes turn over it
+    // is positive again; then the sum of the minors, or the trace, is not.
+    const auto& m = map.m;
+    const P volume_ratio = determinant(map), trace = m[0][0] + m[1][1] + m[2][2];
+    const auto minor = [&m](int a, int b) HWY_ATTR { return m[a][a] * m[b][b] - m[a][b] * m[b][a]; };
+    const P minors = minor(0, 1) + minor(1, 2) + minor(2, 0);
+    auto good = (volume_ratio > zero) & (volume_ratio <= P(std::numeric_limits<T>::max())) & (minors > zero) &
+                (trace > zero);
     HWY_UNROLL(3)
     for (int axis = 0; axis < 3; ++axis) {
       good = good & (abs(P::load_first(velocity[axis] + first, lanes)) <= most);

@@ -12,13 +12,16 @@ double trace(const Real* const strain[6], std::size_t p) {
   return double{strain[0][p]} + double{strain[3][p]} + double{strain[5][p]};
 }
 
-/// det(I + dt grad v), by Sarrus.
+/// Whether a step turns nothing inside out: of I + dt grad v the determinant, by Sarrus, the sum of the minors
+/// and the trace are positive, as they are while no axis, or pair of axes, turns over.
 template <class Real>
-double volume_ratio(const Real* const gradient[9], std::size_t p, double dt) {
+bool keeps_sides(const Real* const gradient[9], std::size_t p, double dt) {
   double m[9];
   for (int k = 0; k < 9; ++k) m[k] = dt * gradient[k][p] + (k % 4 == 0 ? 1.0 : 0.0);
-  return m[0] * m[4] * m[8] + m[1] * m[5] * m[6] + m[2] * m[3] * m[7] - m[2] * m[4] * m[6] -
-         m[1] * m[3] * m[8] - m[0] * m[5] * m[7];
+  const double ratio = m[0] * m[4] * m[8] + m[1] * m[5] * m[6] + m[2] * m[3] * m[7] - m[2] * m[4] * m[6] -
+                       m[1] * m[3] * m[8] - m[0] * m[5] * m[7];
+  const double minors = m[0] * m[4] - m[1] * m[3] + m[4] * m[8] - m[5] * m[7] + m[0] * m[8] - m[2] * m[6];
+  return ratio > 0 && std::isfinite(static_cast<Real>(ratio)) && minors > 0 && m[0] + m[4] + m[8] > 0;
 }
 
 }  // namespace
@@ -45,8 +48,7 @@ template <class Real>
 std::size_t first_failed(const Real* const velocity[3], const Real* const gradient[9], std::size_t count,
                          Real dt, Real spacing) {
   for (std::size_t p = 0; p < count; ++p) {
-    const double ratio = volume_ratio(gradient, p, double{dt});
-    bool good = ratio > 0 && std::isfinite(static_cast<Real>(ratio));
+    bool good = keeps_sides(gradient, p, double{dt});
     for (int axis = 0; axis < 3; ++axis) good = good && std::fabs(velocity[axis][p]) <= spacing / dt;
     if (!good) return p;
   }

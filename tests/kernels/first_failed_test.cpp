@@ -106,6 +106,14 @@ TYPED_TEST(Inspect, DeterminantNotPositive_IsNamed) {
   }
 }
 
+TYPED_TEST(Inspect, TwoAxesThatTurnOver_AreNamed) {
+  const std::array<double, 9> both{-1.5, 0, 0, 0, -1.5, 0, 0, 0, 0};  // det = 1/4, minors = -3/4, trace = 0
+  const std::array<double, 9> far{-4, 0, 0, 0, -4, 0, 0, 0, 0};       // det = 9, minors = 3, trace = -5
+  for (const auto& gradient : {both, far}) {
+    expect_named<TypeParam>([&](auto& trial, std::size_t p) { trial.set_gradient(p, gradient); }, "two axes");
+  }
+}
+
 TYPED_TEST(Inspect, NanInAnyValue_IsNamed) {
   constexpr TypeParam kNan = std::numeric_limits<TypeParam>::quiet_NaN();
   for (int k = 0; k < 12; ++k) {

@@ -21,7 +21,7 @@ TEST(Battery, Case03_ScaledMatrices_Within16Eps) {
 }
 
 // Without a scale the angle of a rotation is taken from squares that vanish.
-TEST(Battery, DISABLED_Case03_SubnormalMatrices_StayBelowTheSmallestNumber) {
+TEST(Battery, Case03_SubnormalMatrices_StayBelowTheSmallestNumber) {
   subnormal_matrices(kSamples);
 }
 

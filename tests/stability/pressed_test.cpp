@@ -280,14 +280,14 @@ TEST(Battery, Case38_SolidsThatOverlapGiveNoEnergy) {
 
 // Two solids that hold a node across oblique normals: the implicit step makes energy, with and without
 // friction.
-TEST(Battery, DISABLED_Case38_SlipAtTwoObliqueSolidsGivesNoEnergyInImplicitSteps) {
+TEST(Battery, Case38_SlipAtTwoObliqueSolidsGivesNoEnergyInImplicitSteps) {
   battery::Case c(38, "colliders that overlap");
   c.at_most("energy beyond what there was, of what is allowed; slip, implicit", surplus({}, "slip", "implicit"),
             1.0);
 }
 
 // Friction of two solids at one node makes energy in explicit steps where nodes lie within both.
-TEST(Battery, DISABLED_Case38_FrictionOfTwoSolidsGivesNoEnergyToWhatBeginsWithin) {
+TEST(Battery, Case38_FrictionOfTwoSolidsGivesNoEnergyToWhatBeginsWithin) {
   battery::Case c(38, "colliders that overlap");
   const std::vector<std::string> within(std::begin(kWithinARoom), std::end(kWithinARoom));
   c.at_most("energy beyond what there was, of what is allowed; begun within, slip",

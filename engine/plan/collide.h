@@ -1,0 +1,195 @@
+// Repose: what all solids at one node do to its velocity, v* -> v-bar -> v-tilde. One solid acts by the law of
+// contact_law.h. Several that act at once, as in a corner, are met at once: v-bar is the velocity nearest to v*
+// that none of them forbids, so that the impulse lies along their normals and does no work but what they do by
+// moving; one after the other each would undo part of what the one before it did, and where walls are oblique
+// sand would gain energy of that (docs/math.md, section 22). Friction then acts along what no wall holds.
+#pragma once
+
+#include <boost/container/small_vector.hpp>
+
+#include <limits>
+
+#include "engine/plan/contact_law.h"
+#include "engine/plan/held_node.h"
+
+namespace repose {
+
+/// A node that several solids meet.
+template <class Real>
+class Corner {
+ public:
+  using Vector3 = typename HeldDirections<Real>::Vector3;
+
+  void clear() { holds_.clear(); }
+  void add(const Constraint<Real>& hold) { holds_.push_back({hold, hold.contact != Contact::kSeparating}); }
+
+  /// v* -> v-bar, by an active set: of contacts that only push the one that would pull most is let go, else the
+  /// one that is passed most is taken up.
+  void settle(Real* v);
+  /// v-bar -> v-tilde: takes at most the sum of all mu J from the motion against the roughest.
+  void rub(Real* v);
+  /// Calls give(solid, velocity, change of velocity) for what each has done.
+  template <class Give>
+  void for_each_given(Give give) const;
+
+ private:
+  std::span<Hold<Real>> holds() { return {holds_.data(), holds_.size()}; }
+  std::span<const Hold<Real>> holds() const { return {holds_.data(), holds_.size()}; }
+  static Real passed_by(const Constraint<Real>& hold, const Vector3& v);
+  void sort(const Vector3& v);
+  bool let_go();
+  bool take_up(const Vector3& v);
+
+  boost::container::small_vector<Hold<Real>, 8> holds_;
+  HeldDirections<Real> directions_;
+  const Constraint<Real>* rough_ = nullptr;
+  Vector3 rubbed_;  // by friction, m/s
+};
+
+/// m/s; of what is sticky more than of anything else.
+template <class Real>
+Real Corner<Real>::passed_by(const Constraint<Real>& hold, const Vector3& v) {
+  if (hold.contact == Contact::kSticky) return std::numeric_limits<Real>::max();
+  const Real by = hold.bound - normal_of(hold).dot(v);
+  return hold.contact == Contact::kSlip ? std::abs(by) : by;
+}
+
+/// Those first that ask for most: of walls that are one, the first counts.
+template <class Real>
+void Corner<Real>::sort(const Vector3& v) {
+  for (std::size_t k = 1; k < holds_.size(); ++k) {
+    for (std::size_t j = k; j > 0; --j) {
+      if (!(passed_by(holds_[j - 1].constraint, v) < passed_by(holds_[j].constraint, v))) break;
+      std::swap(holds_[j - 1], holds_[j]);
+    }
+  }
+}
+
+template <class Real>
+void Corner<Real>::settle(Real* v) {
+  Eigen::Map<Vector3> at(v);
+  const Vector3 free = at;
+  sort(free);
+  // Each contact comes and goes once or twice; beyond that they only take turns.
+  for (std::size_t turn = 0; turn <= 4 * holds_.size(); ++turn) {
+    directions_.span(holds());
+    at = free;
+    directions_.apply(at);
+    directions_.share_out(at - free, holds());
+    if (!let_go() && !take_up(at)) return;
+  }
+}
+
+template <class Real>
+bool Corner<Real>::let_go() {
+  Hold<Real>* pulls = nullptr;
+  for (Hold<Real>& hold : holds_) {
+    if (!hold.active || hold.constraint.contact != Contact::kSeparating || !(hold.push < Real(0))) continue;
+    if (pulls == nullptr || hold.push < pulls->push) pulls = &hold;
+  }
+  if (pulls != nullptr) pulls->active = false;
+  return pulls != nullptr;
+}
+
+template <class Real>
+bool Corner<Real>::take_up(const Vector3& v) {
+  constexpr Real kRounding = Real(1e-6);
+  const Real speed = v.norm();
+  Hold<Real>* passed = nullptr;
+  Real most = Real(0);
+  for (Hold<Real>& hold : holds_) {
+    if (hold.active) continue;
+    const Real by = passed_by(hold.constraint, v);
+    if (!(by > most + kRounding * (std::abs(hold.constraint.bound) + speed))) continue;
+    most = by;
+    passed = &hold;
+  }
+  if (passed != nullptr) passed->active = true;
+  return passed != nullptr;
+}
+
+template <class Real>
+void Corner<Real>::rub(Real* v) {
+  rubbed_.setZero();
+  rough_ = directions_.rough(holds());
+  if (rough_ == nullptr) return;
+  Eigen::Map<Vector3> at(v);
+  const Vector3 slip = directions_.along_walls(at - Eigen::Map<const Vector3>(rough_->velocity));
+  rubbed_ = -share_borne(slip.norm(), HeldDirections<Real>::friction_bound(holds())) * slip;
+  at += rubbed_;
+}
+
+template <class Real>
+template <class Give>
+void Corner<Real>::for_each_given(Give give) const {
+  const Real bound = rough_ == nullptr ? Real(0) : HeldDirections<Real>::friction_bound(holds());
+  for (std::size_t k = 0; k < holds_.size(); ++k) {
+    const Constraint<Real>& hold = holds_[k].constraint;
+    if (!holds_[k].active || hold.solid == Constraint<Real>::kNoSolid) continue;
+    give(static_cast<std::size_t>(hold.solid), hold.velocity, directions_.given(k).data());
+    if (!(bound > Real(0))) continue;
+    const Vector3 part = HeldDirections<Real>::friction_bound(holds(), k) / bound * rubbed_;
+    give(static_cast<std::size_t>(hold.solid), rough_->velocity, part.data());
+  }
+}
+
+/// `solids` knows those near the node, in the order of the scene: size(), contact(k), friction(k), solid(k);
+/// meet(k, v) before the rest is asked of one: at(k), its place beside it, and wall(k), its velocity, or null.
+/// `record` is told what each gives (engine/plan/contact_log.h).
+template <class Real, class Solids, class Record>
+[[gnu::always_inline]] inline void collide(const Solids& solids, Corner<Real>& corner, Real dt, Real* bar,
+                                           Real* tilde, Record record) {
+  const Real start[3] = {bar[0], bar[1], bar[2]};
+  Real impulse = Real(0);
+  std::size_t acting = 0, actor = 0;
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    solids.meet(k, bar);
+    if (!constrain(solids.contact(k), solids.at(k), solids.wall(k), dt, bar, impulse)) continue;
+    ++acting;
+    actor = k;
+  }
+  if (acting == 0) {
+    std::copy_n(bar, 3, tilde);
+    return;
+  }
+  // What one does may drive the node against others that had let it pass.
+  const auto drives = [&] {
+    for (std::size_t k = 0; k < actor; ++k) {
+      Real tried[3] = {bar[0], bar[1], bar[2]}, any;
+      if (constrain(solids.contact(k), solids.at(k), solids.wall(k), dt, tried, any)) return true;
+    }
+    return false;
+  };
+  if (acting > 1 || drives()) {
+    corner.clear();
+    for (std::size_t k = 0; k < solids.size(); ++k) {
+      const auto& at = solids.at(k);
+      const Contact contact = solids.contact(k);
+      if (contact != Contact::kSeparating && !(at.distance < Real(0))) continue;
+      Constraint<Real> hold = constraint_of(contact, at, solids.wall(k), dt);
+      hold.solid = solids.solid(k);
+      hold.friction = solids.friction(k);
+      corner.add(hold);
+    }
+    std::copy_n(start, 3, bar);
+    corner.settle(bar);
+    std::copy_n(bar, 3, tilde);
+    corner.rub(tilde);
+    corner.for_each_given(
+        [&](std::size_t solid, const Real* wall, const Real* change) { record.give(solid, wall, change); });
+    return;
+  }
+  const auto give = [&](const Real* from, const Real* to) {
+    const Real change[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    if (solids.solid(actor) != Constraint<Real>::kNoSolid)
+      record.give(static_cast<std::size_t>(solids.solid(actor)), solids.wall(actor), change);
+  };
+  give(start, bar);
+  std::copy_n(bar, 3, tilde);
+  const Real bound = solids.friction(actor) * impulse;
+  if (!(bound > Real(0))) return;
+  rub(solids.at(actor).normal, solids.wall(actor), bound, tilde);
+  give(bar, tilde);
+}
+
+}  // namespace repose
