@@ -3,7 +3,8 @@
 #   bash bench/study.sh            all of them in full: hours; one that was interrupted goes on
 #   bash bench/study.sh --quick    bar, vortex and columns with fewer points: under 10 minutes on 2 cores
 #   bash bench/study.sh NAME...    some of them
-# Pages are written to out/studies (STUDY_OUT), a folder each. REPOSE names the program to use.
+# Runs are made on one thread, so that their time is also that of the core. Pages are written to out/studies (STUDY_OUT),
+# a folder each. REPOSE names the program to use.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,7 +12,7 @@ quick=false names=()
 for word in "$@"; do
   case "$word" in
     --quick) quick=true ;;
-    -*) sed -n '2,7s/^# *//p' "$0" >&2; exit 64 ;;
+    -*) sed -n '2,8s/^# *//p' "$0" >&2; exit 64 ;;
     *)
       [ -f "bench/studies/$word.json" ] || { echo "bench/studies has no $word.json" >&2; exit 66; }
       names+=("$word") ;;
@@ -32,7 +33,7 @@ study() {  # NAME, then what a quick one changes
   local folder=$out/$name change=()
   if $quick; then folder=$folder-quick change=("$@"); fi
   echo "$name"
-  "$repose" study "bench/studies/$name.json" --out "$folder" "${change[@]}"
+  "$repose" study "bench/studies/$name.json" --out "$folder" --threads 1 "${change[@]}"
 }
 
 transfers=grid.transfer=mls_apic,aflip,flip
@@ -40,6 +41,7 @@ study bar --vary parameters.cells=16,32,64 --vary "$transfers" --repeat 3
 study vortex --vary parameters.cells=16,24,32 --vary "$transfers" --seeds 2 --repeat 1
 study plane_column --vary parameters.cells=8,16,32 --vary "$transfers" --seeds 3 --repeat 1 \
   --reference "finest:parameters.cells=64" --reference-seeds 4
-study column --vary parameters.cells=4,6,8,12 --vary grid.transfer=mls_apic,aflip --seeds 2 --repeat 1 \
+study column --vary parameters.cells=4,6,8,12 --vary grid.transfer=mls_apic,aflip \
+  --vary bodies.column.particles_per_cell=4,8 --seeds 2 --repeat 1 \
   --reference "finest:parameters.cells=24" --reference-seeds 4
 $quick || study box

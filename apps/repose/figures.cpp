@@ -29,9 +29,9 @@ std::string hex(std::uint64_t value) {
 
 Moment moment_of(Simulation& simulation) {
   const Diagnostics d = simulation.diagnose();
-  return {simulation.counters().time, d.center_of_mass,         d.momentum,
-          d.kinetic_energy,           d.affine_energy,          d.elastic_energy,
-          d.potential_energy,         simulation.measurements()};
+  return {simulation.counters().time, d.mass,          d.center_of_mass, d.momentum,
+          d.kinetic_energy,           d.affine_energy, d.elastic_energy, d.potential_energy,
+          simulation.measurements()};
 }
 
 RunRecord begin_record(const Scene& scene, Simulation& simulation) {

@@ -6,7 +6,7 @@ namespace repose {
 
 void describe_swinging(Fields& fields, std::string& of, double& level) {
   fields.text("of", of,
-              "the series: PROBE.QUANTITY, or center_of_mass.x, momentum.x, energy.kinetic and the like", true);
+              "the series: PROBE.QUANTITY, or center_of_mass.x, velocity.x, energy.kinetic and the like", true);
   fields.number("level", level, {.meaning = "about which it swings, in its unit"});
 }
 

@@ -15,6 +15,7 @@ namespace repose {
 /// The state at one time, in sums.
 struct Moment {
   double time = 0.0;                                                   ///< s
+  double mass = 0.0;                                                   ///< kg
   Triple center_of_mass{}, momentum{};                                 ///< m; kg m/s
   double kinetic = 0.0, affine = 0.0, elastic = 0.0, potential = 0.0;  ///< J
   std::vector<Measurement> measured;  ///< by probes, over the frame that ends here

@@ -14,6 +14,7 @@ std::vector<std::pair<std::string, double>> own_numbers(const Moment& m) {
     const std::string name(1, "xyz"[axis]);
     all.emplace_back("center_of_mass." + name, m.center_of_mass[axis]);
     all.emplace_back("momentum." + name, m.momentum[axis]);
+    all.emplace_back("velocity." + name, m.mass > 0.0 ? m.momentum[axis] / m.mass : 0.0);
   }
   all.emplace_back("energy.kinetic", m.kinetic);
   all.emplace_back("energy.affine", m.affine);

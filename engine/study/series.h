@@ -1,5 +1,6 @@
 // Repose: one number over the frames of a run, by name: "PROBE.QUANTITY" of a probe of the scene, or what every
-// run tells: "center_of_mass.x", "momentum.x" (y, z), "energy.kinetic" (affine, elastic, potential, total).
+// run tells: "center_of_mass.x", "momentum.x", "velocity.x" (of the mean; y, z), "energy.kinetic" (affine,
+// elastic, potential, total).
 #pragma once
 
 #include <optional>

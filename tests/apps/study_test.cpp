@@ -155,7 +155,7 @@ TEST_F(StudyCommand, ASecondTime_MakesNoRunAgain) {
   const std::string file = path("out/runs/") + before.begin()->first;
   Json::Value run = read_json(file);
   run["build"] = "another";
-  std::ofstream(file) << run;
+  std::ofstream(file) << run.toStyledString();
   EXPECT_THAT(study(scene, "out", {"--vary", "grid.transfer=apic,flip", "--any-build"}).out,
               HasSubstr("2 of 2 runs"));
   EXPECT_THAT(study(scene, "out", {"--vary", "grid.transfer=apic,flip"}).out, HasSubstr("1 of 2 runs"));

@@ -43,6 +43,8 @@ struct Looks {
   std::vector<Look> of_point;
   std::vector<std::vector<std::size_t>> joined;
   std::vector<LegendEntry> legend;
+  std::vector<double> depth;  // of a point along its line, from 0 to 1; empty: there are no lines
+  std::string depth_text;
 };
 
 /// Lines follow the first key whose values are numbers; the next key is told by colour, the one after it by
@@ -69,6 +71,18 @@ Looks looks_of_product(const StudyHead& head, const StudyPlan& plan) {
     for (const Setting& setting : point.settings)
       rest += setting.key == path->key ? "" : setting.key + "=" + setting.value + ";";
     lines[rest].push_back(k);
+  }
+  if (path != nullptr) {
+    const auto last = static_cast<double>(path->values.size() - 1);
+    std::vector<std::string> ordered = path->values;
+    std::sort(ordered.begin(), ordered.end(),
+              [](const auto& a, const auto& b) { return *number(a) < *number(b); });
+    for (const Point& point : plan.points) {
+      const auto place =
+          std::find(ordered.begin(), ordered.end(), value_of(point, path->key)) - ordered.begin();
+      looks.depth.push_back(std::min(1.0, static_cast<double>(place) / last));
+    }
+    looks.depth_text = path->key + " from " + ordered.front() + ", pale, to " + ordered.back();
   }
   for (auto& [rest, points] : lines) {
     std::stable_sort(points.begin(), points.end(), [&](std::size_t a, std::size_t b) {
@@ -255,6 +269,7 @@ class Charts {
     for (LegendEntry& entry : plot.legend)
       entry.shape = entry.shape == LegendEntry::kHeading ? entry.shape : LegendEntry::kAnyShape;
     while (!plot.legend.empty() && plot.legend.back().shape == LegendEntry::kHeading) plot.legend.pop_back();
+    if (!looks_.depth.empty()) plot.legend.push_back({looks_.depth_text, 0, LegendEntry::kHeading});
     const auto add = [&plot](const Curve& curve, Line line) {
       for (std::size_t i = 0; i < curve.x.size(); ++i) line.points.emplace_back(curve.x[i], curve.y[i]);
       if (line.points.size() > 1) plot.lines.push_back(line);
@@ -264,6 +279,7 @@ class Charts {
       Line line;
       line.colour = looks_.of_point[k].colour;
       line.point = k;
+      if (!looks_.depth.empty()) line.opacity = 0.25 + 0.75 * looks_.depth[k];
       add(summary_.points[k].figures[index_].figure.mean.curve, line);
     }
     Line reference;

@@ -141,13 +141,16 @@ void Drawing::words(double x, double y, const char* anchor, double size, const c
 }
 
 void Drawing::axes() {
-  for (const double x : ticks(x_.low, x_.high, plot_.x.log)) {
-    out_ += format("<path d=\"M%.1f %.1fV%.1f\" stroke=\"%s\"/>\n", across(x), top(), bottom(), kGrid);
-    words(across(x), bottom() + 18.0, "middle", 12.0, kInk, short_number(x));
+  const std::vector<double> along = ticks(x_.low, x_.high, plot_.x.log),
+                            up = ticks(y_.low, y_.high, plot_.y.log);
+  const std::vector<std::string> along_texts = tick_texts(along), up_texts = tick_texts(up);
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    out_ += format("<path d=\"M%.1f %.1fV%.1f\" stroke=\"%s\"/>\n", across(along[k]), top(), bottom(), kGrid);
+    words(across(along[k]), bottom() + 18.0, "middle", 12.0, kInk, along_texts[k]);
   }
-  for (const double y : ticks(y_.low, y_.high, plot_.y.log)) {
-    out_ += format("<path d=\"M%.1f %.1fH%.1f\" stroke=\"%s\"/>\n", kLeft, down(y), kWidth - kRight, kGrid);
-    words(kLeft - 8.0, down(y) + 4.0, "end", 12.0, kInk, short_number(y));
+  for (std::size_t k = 0; k < up.size(); ++k) {
+    out_ += format("<path d=\"M%.1f %.1fH%.1f\" stroke=\"%s\"/>\n", kLeft, down(up[k]), kWidth - kRight, kGrid);
+    words(kLeft - 8.0, down(up[k]) + 4.0, "end", 12.0, kInk, up_texts[k]);
   }
   out_ += format("<path d=\"M%.1f %.1fV%.1fH%.1f\" fill=\"none\" stroke=\"%s\"/>\n", kLeft, top(), bottom(),
                  kWidth - kRight, kInk);
@@ -204,10 +207,10 @@ void Drawing::lines() {
                                 ? ""
                                 : " class=\"curve\" data-point=\"" + std::to_string(line.point) + "\"";
     const char* const colour = line.front || line.reference ? kInk : colour_of(line.colour);
-    const char* const more =
+    const std::string more =
         line.front ? " stroke-width=\"7\" stroke-opacity=\"0.13\" stroke-linecap=\"round\" class=\"front\""
         : line.reference ? " stroke-width=\"1.8\" stroke-dasharray=\"6 4\""
-                         : " stroke-width=\"1.6\" stroke-opacity=\"0.75\"";
+                         : format(" stroke-width=\"1.6\" stroke-opacity=\"%.2g\"", line.opacity);
     out_ += "<path" + tie + " d=\"" + path + "\" fill=\"none\" stroke-linejoin=\"round\" stroke=\"" + colour +
             "\"" + more + "/>\n";
   }
@@ -366,6 +369,23 @@ std::vector<double> ticks(double low, double high, bool log) {
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
     places.push_back(k == 0.0 ? 0.0 : k * step);
   return places;
+}
+
+std::vector<std::string> tick_texts(const std::vector<double>& ticks) {
+  std::vector<std::string> texts;
+  for (int digits = 3; digits < 9; ++digits) {
+    texts.clear();
+    for (const double tick : ticks) texts.push_back(short_number(tick, digits));
+    if (std::adjacent_find(texts.begin(), texts.end()) != texts.end()) continue;
+    // Rounded ones may still differ, and lie: 1.125 as 1.12.
+    const auto lies = [&](std::size_t k) {
+      return std::abs(std::atof(texts[k].c_str()) - ticks[k]) > 1e-6 * std::abs(ticks[k]);
+    };
+    bool right = true;
+    for (std::size_t k = 0; k < ticks.size(); ++k) right = right && !lies(k);
+    if (right) break;
+  }
+  return texts;
 }
 
 std::string svg(const Plot& plot) {

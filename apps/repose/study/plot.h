@@ -31,6 +31,7 @@ struct Line {
   std::size_t point = kNoPoint;
   bool front = false;  ///< the Pareto front
   bool reference = false;
+  double opacity = 0.75;
   static constexpr std::size_t kNoPoint = static_cast<std::size_t>(-1);
 };
 
@@ -64,6 +65,8 @@ std::string short_number(double value, int digits = 3);
 
 /// Places of ticks between two values.
 std::vector<double> ticks(double low, double high, bool log);
+/// What stands at each of them: digits enough to tell neighbours apart.
+std::vector<std::string> tick_texts(const std::vector<double>& ticks);
 
 inline constexpr int kColours = 8, kShapes = 5;
 const char* colour_of(int index);
