@@ -25,6 +25,19 @@ Result<Scene> read_scene(const SceneArguments& arguments) {
   return read_scene(arguments.scene, options);
 }
 
+std::vector<std::string> scene_words(const SceneArguments& arguments) {
+  std::vector<std::string> words{"--quality", arguments.quality};
+  const auto add = [&words](const char* option, const std::string& value) {
+    words.emplace_back(option);
+    words.push_back(value);
+  };
+  if (arguments.allow_outside_paths) words.emplace_back("--allow-outside-paths");
+  if (arguments.threads > 0) add("--threads", std::to_string(arguments.threads));
+  if (!arguments.target.empty()) add("--target", arguments.target);
+  if (arguments.memory > 0) add("--memory", std::to_string(arguments.memory));
+  return words;
+}
+
 Result<SimulationOptions> simulation_options(const SceneArguments& arguments) {
   SimulationOptions options;
   options.threads = arguments.threads;

@@ -52,6 +52,26 @@ struct MovieArguments {
   int threads = 0;
 };
 
+struct FiguresArguments {
+  SceneArguments scene;
+  std::string json;           ///< file; empty: none
+  double most_seconds = 0.0;  ///< of steps, after which the run ends; 0: as long as it takes
+};
+
+struct StudyArguments {
+  SceneArguments scene;
+  std::string out;                ///< folder; empty: out/NAME-study
+  std::vector<std::string> vary;  ///< "key=a,b,c"; none: as the scene's "study" says
+  bool one_by_one = false;
+  std::int64_t seeds = 0, repeat = 0;  ///< 0: as the scene says
+  std::vector<std::string> reference;  ///< "finest", "finest:key=value; key=value", "FIGURE=VALUE"
+  std::int64_t reference_seeds = 0;    ///< of "finest"; 0: as the scene says
+  int parallel = 1;                    ///< runs at once
+  double most_seconds = 0.0;
+  bool any_build = false;  ///< runs that another build of the program made count
+  bool quiet = false;
+};
+
 int run_command(const RunArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int check_command(const SceneArguments& arguments);
@@ -60,6 +80,8 @@ int record_command(const RecordArguments& arguments);
 int compare_command(const std::string& one, const std::string& other);
 int info_command(const std::vector<std::string>& files);
 int movie_command(const MovieArguments& arguments);
+int figures_command(const FiguresArguments& arguments);
+int study_command(const StudyArguments& arguments);
 int schema_command(bool reference);
 
 /// Prints "repose: error: ..." and gives the exit code.
@@ -67,6 +89,8 @@ int fail(const Error& error);
 
 /// Reads the scene that the arguments name.
 Result<Scene> read_scene(const SceneArguments& arguments);
+/// How these are written as words of a command line, of everything but the scene and its overrides.
+std::vector<std::string> scene_words(const SceneArguments& arguments);
 /// Options for the engine; error 64 for an unknown or unsupported target, or too little --memory.
 Result<SimulationOptions> simulation_options(const SceneArguments& arguments);
 

@@ -33,6 +33,33 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
       ->envname("REPOSE_TARGET");
 }
 
+void add_study_options(CLI::App& command, StudyArguments& study) {
+  add_scene_options(command, study.scene);
+  command.add_option("--out", study.out, "folder (default: out/NAME-study); a study that lies there goes on");
+  command.add_option("--vary", study.vary, "key=a,b,c; may be given again; in place of the scene's study.vary")
+      ->allow_extra_args(false);
+  command.add_flag("--one-by-one", study.one_by_one,
+                   "each value alone, all else as the scene is written, in place of all with all");
+  command.add_option("--seeds", study.seeds, "runs of each point, by other places of particles")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--repeat", study.repeat, "times that each run is timed")->check(CLI::Range(1, 1000));
+  command
+      .add_option("--reference", study.reference,
+                  "finest: the point of the smallest grid.spacing; finest:key=value;key=value: that run; "
+                  "FIGURE=VALUE: what is known; may be given again")
+      ->allow_extra_args(false);
+  command
+      .add_option("--reference-seeds", study.reference_seeds,
+                  "runs of the finest, whose scatter is the noise floor")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--parallel", study.parallel, "runs at once (default 1); they slow one another")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--most-seconds", study.most_seconds, "end runs whose steps take longer")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--any-build", study.any_build, "runs that another build of the program made count too");
+  command.add_flag("--quiet", study.quiet, "say nothing but errors");
+}
+
 /// " (did you mean run?)", where a command is called much like `word`.
 std::string meant(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
@@ -100,6 +127,26 @@ int main(int count, char** words) {
   CLI::App& check_app = *app.add_subcommand("check", "validate a scene and its meshes");
   add_scene_options(check_app, check);
   check_app.callback([&] { code = check_command(check); });
+
+  FiguresArguments figures;
+  CLI::App& figures_app = *app.add_subcommand(
+      "figures",
+      "one run without any output: the figures of merit that the scene's \"study\" names, and its time");
+  add_scene_options(figures_app, figures.scene);
+  figures_app.add_option("--json", figures.json, "write them to a file");
+  figures_app.add_option("--most-seconds", figures.most_seconds, "end a run whose steps take longer")
+      ->check(CLI::PositiveNumber);
+  figures_app.callback([&] {
+    const Workers workers(figures.scene.threads);
+    code = figures_command(figures);
+  });
+
+  StudyArguments study;
+  CLI::App& study_app = *app.add_subcommand(
+      "study",
+      "accuracy against time: varies keys of a scene, measures each run, and writes a page with the curves");
+  add_study_options(study_app, study);
+  study_app.callback([&] { code = study_command(study); });
 
   BenchArguments bench;
   CLI::App& bench_app =

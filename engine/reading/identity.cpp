@@ -11,6 +11,7 @@ namespace {
 void strip(Json::Value& root) {
   root.removeMember("output");
   root.removeMember("camera");
+  root.removeMember("study");
   if (!root["time"].isObject()) {
     root.removeMember("time");  // asking for it made it
     return;

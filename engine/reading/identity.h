@@ -9,7 +9,8 @@
 
 namespace repose {
 
-/// What a state depends on, as compact JSON: all of a canonical scene but time.frames, output and camera.
+/// What a state depends on, as compact JSON: all of a canonical scene but time.frames, output, camera and
+/// study.
 std::string identity_text(Json::Value root);
 
 /// The first key that differs between the identities of two canonical texts, with both values: "bodies.box.seed

@@ -92,6 +92,20 @@ Json::Value* find_step(Json::Value& value, const std::string& step, const std::s
   return index ? nullptr : &(value[step] = parse_value("{}", offset));
 }
 
+/// What the steps lead to, of what is there; null where they lead nowhere.
+Json::Value* follow(Json::Value& root, const std::vector<std::string>& steps) {
+  Json::Value* value = &root;
+  for (const std::string& step : steps) {
+    if (value->isArray()) {
+      value = find_element(*value, step);
+    } else {
+      value = value->isObject() && value->isMember(step) ? &(*value)[step] : nullptr;
+    }
+    if (value == nullptr) return nullptr;
+  }
+  return value;
+}
+
 std::string missing_text(const Json::Value& value, const std::string& step, const std::string& reached) {
   const std::string parent = reached.empty() ? "the scene" : "\"" + reached + "\"";
   if (!value.isObject() && !value.isArray()) {
@@ -110,6 +124,11 @@ void apply(const std::string& argument, Json::Value& root, std::ptrdiff_t offset
     complaints.add(offset, "", "not an override; expected key.path=value, such as bodies[0].seed=2");
     return;
   }
+  if (equals + 1 == argument.size()) {
+    Json::Value* const holder = follow(root, {steps.begin(), steps.end() - 1});
+    if (holder != nullptr && holder->isObject()) holder->removeMember(steps.back());
+    return;
+  }
   Json::Value* target = &root;
   std::string reached;
   for (const std::string& step : steps) {
@@ -125,6 +144,11 @@ void apply(const std::string& argument, Json::Value& root, std::ptrdiff_t offset
 }
 
 }  // namespace
+
+const Json::Value* find_value(Json::Value& root, const std::string& path) {
+  const std::vector<std::string> steps = split_path(path);
+  return steps.empty() ? nullptr : follow(root, steps);
+}
 
 void apply_overrides(const std::vector<std::string>& overrides, Json::Value& root, SourceText& source,
                      Complaints& complaints) {

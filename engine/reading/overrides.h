@@ -13,8 +13,12 @@
 namespace repose {
 
 /// Applies "a.b=v", "a[0].b=v" and "colliders.glass.friction=v" (an element of a list by its "name"), in turn.
-/// v is JSON, else taken as text. The last key may be new, all before it must exist.
+/// v is JSON, else taken as text; without any, "a.b=", the key is left out. The last key may be new, all before
+/// it must exist.
 void apply_overrides(const std::vector<std::string>& overrides, Json::Value& root, SourceText& source,
                      Complaints& complaints);
+
+/// What such a path leads to; null where nothing is there.
+const Json::Value* find_value(Json::Value& root, const std::string& path);
 
 }  // namespace repose

@@ -13,6 +13,7 @@
 #include "engine/reading/overrides.h"
 #include "engine/reading/parameters.h"
 #include "engine/reading/quality.h"
+#include "engine/study/study.h"
 
 namespace repose {
 namespace {
@@ -78,6 +79,8 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
   Reading reading{source, expressions, complaints, options.allow_outside_paths};
   JsonFields fields(root, "", reading);
   describe(fields, scene);
+  StudyDescription study;  // only to find what is wrong with it; study_of reads it where it is wanted
+  describe(fields, study);
   fields.finish();
   if (!complaints.empty()) return complaints.error(source);
 

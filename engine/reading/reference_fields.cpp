@@ -5,6 +5,7 @@
 
 #include "engine/base/wording.h"
 #include "engine/reading/reader.h"
+#include "engine/study/study.h"
 
 namespace repose {
 namespace {
@@ -175,6 +176,8 @@ std::string scene_reference() {
   Scene scene;
   ReferenceFields fields("", "Every number may be text that begins with `=`, an expression over `parameters`.");
   describe(fields, scene);
+  StudyDescription study;
+  describe(fields, study);
   return "# Scene keys\n\n" + fields.markdown();
 }
 

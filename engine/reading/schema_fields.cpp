@@ -9,6 +9,7 @@
 #include "engine/base/wording.h"
 #include "engine/reading/json_text.h"
 #include "engine/reading/reader.h"
+#include "engine/study/study.h"
 
 namespace repose {
 namespace {
@@ -213,6 +214,8 @@ std::string scene_schema() {
   Scene scene;
   SchemaFields fields;
   describe(fields, scene);
+  StudyDescription study;
+  describe(fields, study);
   Json::Value schema = fields.schema();
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "A scene of Repose";

@@ -49,8 +49,8 @@ void collect_keys(const Json::Value& schema, std::set<std::string>& keys) {
 TEST(SceneSchema, Root_ListsEveryKeyAndNoOther) {
   const Json::Value schema = parsed_schema();
   EXPECT_EQ(schema["$schema"].asString(), "https://json-schema.org/draft/2020-12/schema");
-  std::set<std::string> keys{"$schema", "bodies", "camera",     "grid",   "implicit", "materials",
-                             "name",    "output", "parameters", "repose", "time",     "up"};
+  std::set<std::string> keys{"$schema", "bodies",     "camera", "grid",  "implicit", "materials", "name",
+                             "output",  "parameters", "repose", "study", "time",     "up"};
   Effects effects;
   for_each_effect(effects, [&](auto& effect) {
     KeyNames names;

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# The committed studies (bench/studies): accuracy against time.
+#   bash bench/study.sh            all of them in full: hours; one that was interrupted goes on
+#   bash bench/study.sh --quick    bar, vortex and columns with fewer points: under 10 minutes on 2 cores
+#   bash bench/study.sh NAME...    some of them
+# Runs are made on one thread, so that their time is also that of the core. Pages are written to out/studies (STUDY_OUT),
+# a folder each. REPOSE names the program to use.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+quick=false names=()
+for word in "$@"; do
+  case "$word" in
+    --quick) quick=true ;;
+    -*) sed -n '2,8s/^# *//p' "$0" >&2; exit 64 ;;
+    *)
+      [ -f "bench/studies/$word.json" ] || { echo "bench/studies has no $word.json" >&2; exit 66; }
+      names+=("$word") ;;
+  esac
+done
+
+repose=${REPOSE:-build/release/apps/repose/repose}
+if [ ! -x "$repose" ]; then
+  cmake --preset release >/dev/null
+  cmake --build --preset release --target repose
+fi
+out=${STUDY_OUT:-out/studies}
+
+study() {  # NAME, then what a quick one changes
+  local name=$1
+  shift
+  if [ ${#names[@]} -gt 0 ] && [[ " ${names[*]} " != *" $name "* ]]; then return; fi
+  local folder=$out/$name change=()
+  if $quick; then folder=$folder-quick change=("$@"); fi
+  echo "$name"
+  "$repose" study "bench/studies/$name.json" --out "$folder" --threads 1 "${change[@]}"
+}
+
+transfers=grid.transfer=mls_apic,aflip,flip
+study bar --vary parameters.cells=16,32,64 --vary "$transfers" --repeat 3
+study vortex --vary parameters.cells=16,24,32 --vary "$transfers" --seeds 2 --repeat 1
+study plane_column --vary parameters.cells=8,16,32 --vary "$transfers" --seeds 3 --repeat 1 \
+  --reference "finest:parameters.cells=64" --reference-seeds 4
+study column --vary parameters.cells=4,6,8,12 --vary grid.transfer=mls_apic,aflip \
+  --vary bodies.column.particles_per_cell=4,8 --seeds 2 --repeat 1 \
+  --reference "finest:parameters.cells=24" --reference-seeds 4
+$quick || study box
