@@ -8,7 +8,7 @@ packages=(g++ cmake ninja-build pkg-config ccache libopenvdb-dev libboost-iostre
 if [ "${1:-}" = "--tests" ] || [ "${1:-}" = "--all" ]; then
   packages+=(libgtest-dev libgmock-dev libbenchmark-dev libopenvdb-tools python3 python3-meshio python3-vtk9)
 fi
-[ "${1:-}" = "--all" ] && packages+=(valgrind)
+[ "${1:-}" = "--all" ] && packages+=(valgrind dpkg-dev file lintian)
 
 missing=()
 for package in "${packages[@]}"; do
