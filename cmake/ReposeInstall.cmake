@@ -33,7 +33,8 @@ set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_PACKAGE_CONTACT "The authors of Repose <repose@localhost>")
+set(REPOSE_MAINTAINER "The authors of Repose <repose@localhost>" CACHE STRING "Whom Debian packages name")
+set(CPACK_PACKAGE_CONTACT "${REPOSE_MAINTAINER}")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -43,23 +44,27 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME ${soname})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
-  "sand by the Material Point Method, shared library\n Repose simulates sand, and elastic bodies that meet it, on sparse blocks.\n This package holds the library that programs embed.")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/debian/triggers")
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "sand by the Material Point Method, shared library
+Repose simulates sand, and elastic bodies that meet it, on sparse blocks.
+This package holds the library that programs embed.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librepose-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${soname} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
   "libopenvdb-dev, libboost-iostreams-dev, libtbb-dev, libhwy-dev, libjsoncpp-dev, libmuparser-dev, zlib1g-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-  "sand by the Material Point Method, development files\n Headers of the C and C++ interfaces of Repose, the static library, and what CMake\n and pkg-config need to find them.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "sand by the Material Point Method, development files
+Headers of the C and C++ interfaces of Repose, the static library, and
+what CMake and pkg-config need to find them.")
 if(REPOSE_COMMAND)
   list(APPEND CPACK_COMPONENTS_ALL tools)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME repose)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS ffmpeg)
-  set(CPACK_COMPONENT_TOOLS_DESCRIPTION
-    "sand by the Material Point Method, command\n The command that runs, checks, measures and films scenes, with scenes to begin with.")
+  set(CPACK_DEBIAN_TOOLS_DESCRIPTION "sand by the Material Point Method, command
+The command that runs, checks, measures and films scenes, with scenes to
+begin with.")
 endif()
 
 # What Debian wants beside each package.
@@ -73,7 +78,7 @@ endif()
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
   set(folder "${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME}")
-  install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${folder}" RENAME copyright COMPONENT ${component})
+  install(FILES "${PROJECT_SOURCE_DIR}/cmake/debian/copyright" DESTINATION "${folder}" COMPONENT ${component})
   if(REPOSE_GZIP)
     install(FILES "${history}.gz" DESTINATION "${folder}" COMPONENT ${component})
   endif()

@@ -14,6 +14,21 @@ constexpr double kLeastShare = 1e-3;
 /// Coordinates of cells have 32 bits.
 constexpr double kMostCells = 1e9;
 
+/// Of what makes particles by itself.
+void describe_flow(Fields& fields, Emitter& emitter) {
+  fields.integer("seed", emitter.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
+  fields.number("start", emitter.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
+  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; without it, never", .low = 0.0});
+  fields.check(emitter.end > emitter.start, "end", "must come after \"start\"");
+  fields.number(
+      "spread", emitter.spread,
+      {.meaning = "largest random velocity of a particle, as a share of its speed", .low = 0.0, .high = 1.0});
+  fields.integer("most_particles", emitter.most_particles,
+                 {.meaning = "it ends when it has made so many; 0: no limit", .low = 0.0, .high = 4.0e9});
+  fields.number("most_volume", emitter.most_volume,
+                {.unit = "m^3", .meaning = "it ends when it has made so much; 0: no limit", .low = 0.0});
+}
+
 void describe_column(Fields& fields, Emitter& emitter) {
   fields.vector("center", emitter.center, {.unit = "m", .meaning = "middle of the mouth", .required = true});
   fields.vector("normal", emitter.normal,
@@ -65,9 +80,21 @@ void describe(Fields& fields, Emitter& emitter) {
   fields.text("name", emitter.name, "what messages and the ledger call it; no two emitters share a name", true);
   fields.text("material", emitter.material, "name of one of the materials", true);
   const Alternative kinds[] = {
-      {"disc", "a column moves through a disc", [&](Fields& f) { describe_disc(f, emitter); }},
-      {"rectangle", "a column moves through a rectangle", [&](Fields& f) { describe_rectangle(f, emitter); }},
-      {"volume", "a solid is filled at random", [&](Fields& f) { describe_volume(f, emitter); }},
+      {"disc", "a column moves through a disc",
+       [&](Fields& f) {
+         describe_disc(f, emitter);
+         describe_flow(f, emitter);
+       }},
+      {"rectangle", "a column moves through a rectangle",
+       [&](Fields& f) {
+         describe_rectangle(f, emitter);
+         describe_flow(f, emitter);
+       }},
+      {"volume", "a solid is filled at random",
+       [&](Fields& f) {
+         describe_volume(f, emitter);
+         describe_flow(f, emitter);
+       }},
       {"host", "nothing begins by itself: a program that embeds the engine adds particles", [](Fields&) {}},
   };
   int chosen = static_cast<int>(emitter.type);
@@ -75,18 +102,6 @@ void describe(Fields& fields, Emitter& emitter) {
   emitter.type = static_cast<Emitter::Type>(chosen);
   fields.integer("particles_per_cell", emitter.particles_per_cell,
                  {.meaning = "particles in a full cell", .low = 1.0, .high = 512.0});
-  if (emitter.type == Emitter::Type::kHost) return;
-  fields.integer("seed", emitter.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
-  fields.number("start", emitter.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
-  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; without it, never", .low = 0.0});
-  fields.check(emitter.end > emitter.start, "end", "must come after \"start\"");
-  fields.number(
-      "spread", emitter.spread,
-      {.meaning = "largest random velocity of a particle, as a share of its speed", .low = 0.0, .high = 1.0});
-  fields.integer("most_particles", emitter.most_particles,
-                 {.meaning = "it ends when it has made so many; 0: no limit", .low = 0.0, .high = 4.0e9});
-  fields.number("most_volume", emitter.most_volume,
-                {.unit = "m^3", .meaning = "it ends when it has made so much; 0: no limit", .low = 0.0});
 }
 
 /// What no key can say alone, and what a host may have filled in; empty if all is right.

@@ -1,7 +1,5 @@
 // Repose: what hosts do between calls that advance: views of channels, solids that they lead, particles that
 // they begin and end, and another scene for the same state.
-#include "engine/simulation/host.h"
-
 #include <algorithm>
 #include <cmath>
 

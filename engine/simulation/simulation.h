@@ -17,7 +17,6 @@
 #include "engine/io/point_cloud.h"
 #include "engine/plan/report.h"
 #include "engine/scene/points_wanted.h"
-#include "engine/simulation/host.h"
 #include "engine/simulation/reports.h"
 #include "engine/state/counters.h"
 #include "engine/step/memory_use.h"
