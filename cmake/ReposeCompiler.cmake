@@ -1,6 +1,6 @@
 # How every file is compiled. Same bits on every machine: no fast-math, no contraction that the compiler
 # chooses (fused operations are written in the kernels), no flags that depend on the building machine.
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
@@ -11,7 +11,7 @@ endif()
 
 add_library(repose_flags INTERFACE)
 target_compile_options(repose_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror>
   -Wno-restrict  # g++ 12 warns of std::string operator+ (GCC bug 105329)
   -ffp-contract=off -fno-math-errno)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

@@ -58,6 +58,11 @@ void initialize(const std::vector<AskedEffect<Real>>& effects, Newcomers<Real>& 
 template <class Real>
 Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state);
 
+/// The sets of a scene without particles, with the figures that those of another state have. Error 65: they do
+/// not go together.
+template <class Real>
+Result<void> adopt_sets(Compilation<Real>& compilation, const State<Real>& of, State<Real>& state);
+
 inline StepLimits step_limits(const Scene& scene) {
   const TimeDescription& time = scene.time;
   return {time.max_step, time.cfl, time.sound, time.isolated, time.strain, {}};

@@ -167,9 +167,12 @@ Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_p
   return std::move(around->solids);
 }
 
+namespace {
+
+/// A scene on its way: what is made of it before there are particles.
 template <class Real>
-Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options) {
-  CompiledScene<Real> compiled;
+Result<Compilation<Real>> begin(const Scene& scene, const CompileOptions& options,
+                                CompiledScene<Real>& compiled) {
   State<Real>& state = compiled.state;
   state.spacing = scene.grid.spacing;
   state.topology = make_topology(scene);
@@ -181,10 +184,16 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
   compiled.solids = around->solids;
   Compilation<Real> compilation{scene, options, std::move(*around)};
   if (auto made = make_effects(compilation); !made) return made.error();
-  if (auto seeded = seed_bodies(compilation, state); !seeded) return seeded.error();
+  return compilation;
+}
+
+/// The plan, once there are sets and it is known how steps are made.
+template <class Real>
+Result<void> finish(const Compilation<Real>& compilation, CompiledScene<Real>& compiled) {
+  const Scene& scene = compilation.scene;
+  State<Real>& state = compiled.state;
   if (auto sound = check_masses(scene, state); !sound) return sound.error();
   const char* const only = explicit_only(scene.effects);
-  compiled.integrator = choose_integrator(compilation, state, only);
   if (compiled.integrator.implicit && only != nullptr) {
     return Error{ErrorKind::kBadScene, "is for explicit steps; leave it out, or time.integrator at explicit",
                  scene.where(only)};
@@ -200,10 +209,47 @@ Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptio
     return Error{ErrorKind::kInternal, "internal error: " + fault + "; please report it, with the scene",
                  scene.name};
   state.tallies.assign(compiled.plan.tallies(), 0.0);
+  return {};
+}
+
+}  // namespace
+
+template <class Real>
+Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options) {
+  CompiledScene<Real> compiled;
+  auto compilation = begin(scene, options, compiled);
+  if (!compilation) return compilation.error();
+  if (auto seeded = seed_bodies(*compilation, compiled.state); !seeded) return seeded.error();
+  compiled.integrator = choose_integrator(*compilation, compiled.state, explicit_only(scene.effects));
+  if (auto finished = finish(*compilation, compiled); !finished) return finished.error();
   return compiled;
 }
 
-template Result<CompiledScene<float>> compile_scene(const Scene&, const CompileOptions&);
-template Result<CompiledScene<double>> compile_scene(const Scene&, const CompileOptions&);
+template <class Real>
+Result<CompiledScene<Real>> compile_for(const State<Real>& of, const Scene& scene,
+                                        const CompileOptions& options, bool implicit) {
+  CompiledScene<Real> compiled;
+  auto compilation = begin(scene, options, compiled);
+  if (!compilation) return compilation.error();
+  if (auto adopted = adopt_sets(*compilation, of, compiled.state); !adopted) return adopted.error();
+  compiled.integrator.implicit = implicit;
+  compiled.integrator.reason = "as it was when the simulation was made";
+  if (auto finished = finish(*compilation, compiled); !finished) return finished.error();
+  const State<Real>& state = compiled.state;
+  if (state.rest.on != of.rest.on || state.tallies.size() != of.tallies.size())
+    return Error{ErrorKind::kBadScene,
+                 "has other probes, or other rules of sleep: a state cannot go on so; make a "
+                 "new simulation of it",
+                 scene.name};
+  return compiled;
+}
+
+#define REPOSE_INSTANTIATE(Real)                                                                            \
+  template Result<CompiledScene<Real>> compile_scene(const Scene&, const CompileOptions&);                  \
+  template Result<CompiledScene<Real>> compile_for(const State<Real>&, const Scene&, const CompileOptions&, \
+                                                   bool);
+REPOSE_INSTANTIATE(float)
+REPOSE_INSTANTIATE(double)
+#undef REPOSE_INSTANTIATE
 
 }  // namespace repose

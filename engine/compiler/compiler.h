@@ -20,6 +20,8 @@ struct CompileOptions {
   Target target = best_target();
   bool allow_outside_paths = false;
   double memory_limit = std::numeric_limits<double>::infinity();  ///< bytes
+  /// Keep a log of what solids do to the material, though no effect reads one.
+  bool log_contacts = false;
   /// Of implicit steps, by which time.integrator `auto` is decided; none: the committed ones.
   std::span<const ImplicitCost> implicit_costs = {};
 };
@@ -37,6 +39,13 @@ struct CompiledScene {
 /// spacing that would.
 template <class Real>
 Result<CompiledScene<Real>> compile_scene(const Scene& scene, const CompileOptions& options);
+
+/// The plan of a scene by which a state of another may go on: bodies are not filled, `state` holds the sets of
+/// `of` without particles, and steps are made as `implicit` says. Errors: as compile_scene, and 65 where its
+/// sets, its grid or what its particles keep are others than those of `of`.
+template <class Real>
+Result<CompiledScene<Real>> compile_for(const State<Real>& of, const Scene& scene,
+                                        const CompileOptions& options, bool implicit);
 
 /// The solids of a scene, for reports and pictures.
 Result<std::vector<Solid>> build_solids(const Scene& scene, bool allow_outside_paths);

@@ -200,6 +200,46 @@ Result<void> seed_bodies(Compilation<Real>& compilation, State<Real>& state) {
   return {};
 }
 
+template <class Real>
+Result<void> adopt_sets(Compilation<Real>& compilation, const State<Real>& of, State<Real>& state) {
+  const Scene& scene = compilation.scene;
+  const auto refuse = [&](const std::string& what) {
+    return Error{ErrorKind::kBadScene, what + ": a state cannot go on so; make a new simulation of it",
+                 scene.name};
+  };
+  for (const BodyDescription& body : scene.bodies)
+    state.sets.push_back(empty_set(compilation, body.name, body.material));
+  open_ledger(compilation, state);
+  const bool same_grid = state.spacing == of.spacing && state.origin_cells == of.origin_cells &&
+                         state.topology.flat_axis == of.topology.flat_axis &&
+                         state.topology.period == of.topology.period &&
+                         state.topology.period_start == of.topology.period_start;
+  if (!same_grid) return refuse("has another grid");
+  const bool same_sets = state.sets.size() == of.sets.size() &&
+                         state.ledger.emitted.size() == of.ledger.emitted.size() &&
+                         state.ledger.removed.size() == of.ledger.removed.size();
+  if (!same_sets) return refuse("has other bodies, emitters or sinks");
+  for (std::size_t k = 0; k < of.sets.size(); ++k) {
+    const ParticleSet<Real>& set = of.sets[k];
+    ParticleSet<Real>& mine = state.sets[k];
+    bool same = set.name == mine.name && set.material == mine.material &&
+                set.keeps_affine == mine.keeps_affine && set.law_channels == mine.law_channels &&
+                set.extra.size() == mine.extra.size();
+    for (std::size_t c = 0; same && c < set.extra.size(); ++c) same = set.extra[c].name == mine.extra[c].name;
+    if (!same) return refuse("keeps other numbers with the particles of \"" + set.name + "\"");
+    const double mass = set.particle_volume * material_of(scene, mine.material).elasticity().density;
+    if (std::abs(mass - set.particle_mass) > 1e-9 * mass)
+      return refuse("has another density for \"" + set.name + "\"");
+    mine.particle_mass = set.particle_mass;
+    mine.particle_volume = set.particle_volume;
+  }
+  state.ledger = of.ledger;
+  state.counters = of.counters;
+  return {};
+}
+
+template Result<void> adopt_sets(Compilation<float>&, const State<float>&, State<float>&);
+template Result<void> adopt_sets(Compilation<double>&, const State<double>&, State<double>&);
 template void initialize(const std::vector<AskedEffect<float>>&, Newcomers<float>&);
 template void initialize(const std::vector<AskedEffect<double>>&, Newcomers<double>&);
 template Result<void> seed_bodies(Compilation<float>&, State<float>&);

@@ -163,9 +163,10 @@ void PlanCompiler<Real>::begin_nodes() {
 template <class Real>
 void PlanCompiler<Real>::ask_effects() {
   const auto& effects = compilation_.effects;
-  const bool logs = std::any_of(effects.begin(), effects.end(), [](const AskedEffect<Real>& asked) {
-    return asked.effect->reads_contact_log();
-  });
+  const bool logs = compilation_.options.log_contacts ||
+                    std::any_of(effects.begin(), effects.end(), [](const AskedEffect<Real>& asked) {
+                      return asked.effect->reads_contact_log();
+                    });
   const auto& solids = compilation_.surroundings.solids;
   const bool any_moves =
       std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.moves(); });

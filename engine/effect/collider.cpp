@@ -80,6 +80,15 @@ void Colliders::declare(Fields& fields, const SceneOutline& outline) {
 
 namespace {
 
+/// Where a host leads a solid: what the scene says of its motion has no say.
+std::string wrong_with_lead(const Collider& collider) {
+  if (collider.motion.given || collider.frames.given)
+    return "cannot be led by a host: it has a \"motion\" or \"frames\" of its own; leave them out";
+  if (collider.lead == Lead::kMesh && collider.shape.type != ShapeDescription::Type::kMesh)
+    return "has no mesh that a host could lead; choose a shape of type \"mesh\"";
+  return "";
+}
+
 /// Builds a solid; errors name its key.
 Result<Solid> build(const Collider& collider, const Surroundings& around) {
   const std::string key = "colliders." + collider.name;
@@ -88,6 +97,17 @@ Result<Solid> build(const Collider& collider, const Surroundings& around) {
   solid.hollow = collider.hollow;
   solid.contact = collider.contact;
   solid.friction = collider.friction;
+  if (const std::string wrong = wrong_with_lead(collider); collider.lead != Lead::kNone && !wrong.empty())
+    return Error{ErrorKind::kUsage, wrong, around.where(key)};
+  if (collider.lead == Lead::kMesh) {
+    auto sequence = MeshSequence::led(collider.shape, collider.lead_rate, around.folder, around.spacing,
+                                      around.allow_outside_paths);
+    if (!sequence) return Error{sequence.error().kind, sequence.error().text(), around.where(key + ".shape")};
+    solid.sequence = solid.led_sequence = *sequence;
+    solid.shape = solid.sequence->at(0.0);
+    solid.periods = around.periods;
+    return solid;
+  }
   if (collider.frames.given) {
     auto sequence = MeshSequence::make(collider.shape, collider.frames, around.folder, around.spacing,
                                        around.allow_outside_paths);
@@ -100,6 +120,13 @@ Result<Solid> build(const Collider& collider, const Surroundings& around) {
   auto shape = around.shape_alone(collider.shape, key + ".shape");
   if (!shape) return shape.error();
   solid.shape = *shape;
+  if (collider.lead == Lead::kPose) {
+    const Bounds bounds = solid.shape->bounds();
+    const bool finite = bounds.lower.allFinite() && bounds.upper.allFinite();
+    solid.motion = solid.led_motion =
+        RigidMotion::led(finite ? Vec3(0.5 * (bounds.lower + bounds.upper)) : Vec3(0, 0, 0));
+    solid.periods = around.periods;
+  }
   if (collider.motion.given) {
     auto motion = RigidMotion::make(collider.motion);
     if (!motion) return Error{motion.error().kind, motion.error().text(), around.where(key + ".motion")};

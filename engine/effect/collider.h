@@ -21,6 +21,13 @@ enum class Appearance {
   kHidden,
 };
 
+/// Whether a host leads a solid, which is no key of a scene: it says so when it fills one.
+enum class Lead {
+  kNone,
+  kPose,  ///< rigid, pose by pose (RigidMotion::lead)
+  kMesh,  ///< deforming, mesh by mesh (MeshSequence::next)
+};
+
 struct Collider {
   std::string name;
   ShapeDescription shape;
@@ -30,6 +37,8 @@ struct Collider {
   Appearance appearance = Appearance::kAuto;
   MotionDescription motion;
   SequenceDescription frames;  ///< of a mesh that deforms
+  Lead lead = Lead::kNone;
+  double lead_rate = 24.0;  ///< meshes per second
 };
 
 /// All colliders of a scene, as one effect: a node may be near several.

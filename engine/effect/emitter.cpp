@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/effect/effect.h"
-#include "engine/geometry/seed_lattice.h"
+#include "engine/effect/host_inlet.h"
 
 namespace repose {
 namespace {
@@ -13,6 +13,21 @@ namespace {
 constexpr double kLeastShare = 1e-3;
 /// Coordinates of cells have 32 bits.
 constexpr double kMostCells = 1e9;
+
+/// Of what makes particles by itself.
+void describe_flow(Fields& fields, Emitter& emitter) {
+  fields.integer("seed", emitter.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
+  fields.number("start", emitter.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
+  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; without it, never", .low = 0.0});
+  fields.check(emitter.end > emitter.start, "end", "must come after \"start\"");
+  fields.number(
+      "spread", emitter.spread,
+      {.meaning = "largest random velocity of a particle, as a share of its speed", .low = 0.0, .high = 1.0});
+  fields.integer("most_particles", emitter.most_particles,
+                 {.meaning = "it ends when it has made so many; 0: no limit", .low = 0.0, .high = 4.0e9});
+  fields.number("most_volume", emitter.most_volume,
+                {.unit = "m^3", .meaning = "it ends when it has made so much; 0: no limit", .low = 0.0});
+}
 
 void describe_column(Fields& fields, Emitter& emitter) {
   fields.vector("center", emitter.center, {.unit = "m", .meaning = "middle of the mouth", .required = true});
@@ -65,26 +80,28 @@ void describe(Fields& fields, Emitter& emitter) {
   fields.text("name", emitter.name, "what messages and the ledger call it; no two emitters share a name", true);
   fields.text("material", emitter.material, "name of one of the materials", true);
   const Alternative kinds[] = {
-      {"disc", "a column moves through a disc", [&](Fields& f) { describe_disc(f, emitter); }},
-      {"rectangle", "a column moves through a rectangle", [&](Fields& f) { describe_rectangle(f, emitter); }},
-      {"volume", "a solid is filled at random", [&](Fields& f) { describe_volume(f, emitter); }},
+      {"disc", "a column moves through a disc",
+       [&](Fields& f) {
+         describe_disc(f, emitter);
+         describe_flow(f, emitter);
+       }},
+      {"rectangle", "a column moves through a rectangle",
+       [&](Fields& f) {
+         describe_rectangle(f, emitter);
+         describe_flow(f, emitter);
+       }},
+      {"volume", "a solid is filled at random",
+       [&](Fields& f) {
+         describe_volume(f, emitter);
+         describe_flow(f, emitter);
+       }},
+      {"host", "nothing begins by itself: a program that embeds the engine adds particles", [](Fields&) {}},
   };
   int chosen = static_cast<int>(emitter.type);
   fields.alternatives(chosen, kinds, "what kind of emitter");
   emitter.type = static_cast<Emitter::Type>(chosen);
   fields.integer("particles_per_cell", emitter.particles_per_cell,
                  {.meaning = "particles in a full cell", .low = 1.0, .high = 512.0});
-  fields.integer("seed", emitter.seed, {.meaning = "of the random numbers that place particles", .low = 0.0});
-  fields.number("start", emitter.start, {.unit = "s", .meaning = "when it begins", .low = 0.0});
-  fields.number("end", emitter.end, {.unit = "s", .meaning = "when it ends; without it, never", .low = 0.0});
-  fields.check(emitter.end > emitter.start, "end", "must come after \"start\"");
-  fields.number(
-      "spread", emitter.spread,
-      {.meaning = "largest random velocity of a particle, as a share of its speed", .low = 0.0, .high = 1.0});
-  fields.integer("most_particles", emitter.most_particles,
-                 {.meaning = "it ends when it has made so many; 0: no limit", .low = 0.0, .high = 4.0e9});
-  fields.number("most_volume", emitter.most_volume,
-                {.unit = "m^3", .meaning = "it ends when it has made so much; 0: no limit", .low = 0.0});
 }
 
 /// What no key can say alone, and what a host may have filled in; empty if all is right.
@@ -186,16 +203,8 @@ void EmitterRuntime<Real>::emit(const Working<Real>& working, std::uint64_t firs
     const double age = std::max(0.0, now - working.stream.flow().crossing(first + p));
     const Vec3 v = birth.velocity + age * gravity;
     places[p] = birth.position + age * (birth.velocity + 0.5 * age * gravity);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<std::size_t>(axis);
-      const bool flat = axis == surroundings_.flat_axis;
-      const double x = places[p][axis] / surroundings_.spacing, cell = std::floor(x);
-      // On the lattice of seeds, so that nothing below 1 rounds up to it.
-      const double offset = std::floor((x - cell) / kLatticeStep) * kLatticeStep;
-      set.position[axis][p] = static_cast<Real>(flat ? 0.5 : offset);
-      added.cells[p][at] = (flat ? 0 : static_cast<std::int32_t>(cell)) + surroundings_.origin_cells[at];
-      set.velocity[axis][p] = static_cast<Real>(v[axis]);
-    }
+    put_at(places[p], surroundings_, p, added);
+    for (int axis = 0; axis < 3; ++axis) set.velocity[axis][p] = static_cast<Real>(v[axis]);
   }
   Newcomers<Real> newcomers{
       set,
@@ -232,10 +241,17 @@ void Emitters::declare(Fields& fields, const SceneOutline& outline) {
   });
 }
 
+bool Emitters::any_host() const {
+  return std::any_of(list.begin(), list.end(), [](const Emitter& e) { return e.type == Emitter::Type::kHost; });
+}
+
 std::vector<Inlet> Emitters::inlets() const {
   std::vector<Inlet> inlets;
   for (const Emitter& e : list) {
-    const double speed = (1.0 + e.spread) * (e.type == Emitter::Type::kVolume ? e.velocity.norm() : e.speed);
+    const double moves = e.type == Emitter::Type::kVolume ? e.velocity.norm()
+                         : e.type == Emitter::Type::kHost ? 0.0
+                                                          : e.speed;
+    const double speed = (1.0 + e.spread) * moves;
     inlets.push_back({e.name, "emitters", e.material, e.particles_per_cell, speed});
   }
   return inlets;
@@ -261,9 +277,11 @@ class Sources : public Effect<Real> {
     for (const Emitter& emitter : list_) {
       const std::string key = "emitters." + emitter.name;
       const Flow flow = flow_of(emitter, surroundings.spacing, surroundings.flat_axis);
-      if (const std::string wrong = wrong_with(emitter, flow, surroundings); !wrong.empty())
-        return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
+      const std::string wrong =
+          emitter.type == Emitter::Type::kHost ? "" : wrong_with(emitter, flow, surroundings);
+      if (!wrong.empty()) return Error{ErrorKind::kBadScene, wrong, surroundings.where(key)};
       shapes_.emplace_back();
+      if (emitter.type == Emitter::Type::kHost) continue;
       if (emitter.type != Emitter::Type::kVolume) continue;
       auto shape = volume_of(emitter, key + ".shape", surroundings);
       if (!shape) return shape.error();
@@ -275,6 +293,7 @@ class Sources : public Effect<Real> {
   Bounds mouths() const override {
     Bounds all;
     for (std::size_t k = 0; k < list_.size(); ++k) {
+      if (list_[k].type == Emitter::Type::kHost) continue;
       const Vec3& center = list_[k].center;
       const Bounds mouth = shapes_[k] != nullptr ? shapes_[k]->bounds() : Bounds{center, center};
       all.lower = all.lower.cwiseMin(mouth.lower);
@@ -286,12 +305,20 @@ class Sources : public Effect<Real> {
   /// An event: when the oldest particle that has crossed has gone about a cell, and at the end of a frame.
   void add_to(PlanBuilder<Real>& plan) const override {
     std::vector<Working<Real>> working;
+    std::vector<typename HostInlets<Real>::Inlet> of_host;
     for (std::size_t e = 0; e < list_.size(); ++e) {
       const InletPlace place = plan.inlet(e);
+      if (list_[e].type == Emitter::Type::kHost) {
+        of_host.push_back({list_[e].name, place, plan.sets[place.set].description});
+        continue;
+      }
       Stream stream(list_[e], shapes_[e], surroundings_.spacing, surroundings_.flat_axis);
       const double patience = patience_of(list_[e], stream.flow(), surroundings_);
       working.push_back({std::move(stream), place, plan.sets[place.set].description, patience});
     }
+    if (!of_host.empty())
+      plan.make(kHostInlets, std::move(of_host), plan.first_outlet(), surroundings_, plan.initialize());
+    if (working.empty()) return;
     plan.events.add(
         {"emit", "emitters"}, reads(), writes(kParticles),
         std::make_shared<const EmitterRuntime<Real>>(std::move(working), surroundings_, plan.initialize()));

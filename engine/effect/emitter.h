@@ -23,6 +23,11 @@ struct Emitters : EffectDescription {
   std::string why() const { return entries_text(list.size(), "emitters"); }
 
   std::vector<Inlet> inlets() const;
+  /// What a host removes, where it may add.
+  std::vector<std::string> outlets() const {
+    return any_host() ? std::vector<std::string>{"host"} : std::vector<std::string>();
+  }
+  bool any_host() const;
   double particles_by(double time, double spacing, int flat_axis) const;
 
   template <class Real>

@@ -32,8 +32,9 @@ double drift(const Bounds& bounds, const Placement& from, const Placement& to) {
 
 MovingSolid::MovingSolid(const Solid& solid, std::size_t index) : solid_(solid), index_(index) {
   constexpr double kAnyRadius = 1.0;  // m
-  stands_ = (deforms() ? solid_.sequence->fastest(0.0, kForEver)
-                       : solid_.motion->fastest(0.0, kForEver, kAnyRadius)) == 0.0;
+  const bool led = solid_.led_motion != nullptr || solid_.led_sequence != nullptr;
+  stands_ = !led && (deforms() ? solid_.sequence->fastest(0.0, kForEver)
+                               : solid_.motion->fastest(0.0, kForEver, kAnyRadius)) == 0.0;
   if (deforms()) return;
   const Bounds body = solid_.shape->bounds();
   const bool finite = body.lower.allFinite() && body.upper.allFinite();

@@ -12,6 +12,8 @@ Solid Solid::at(double time) const {
   if (moves()) still.shape = in_periods(still.shape, periods);
   still.motion = nullptr;
   still.sequence = nullptr;
+  still.led_motion = nullptr;
+  still.led_sequence = nullptr;
   return still;
 }
 

@@ -23,8 +23,11 @@ struct Solid {
   std::shared_ptr<const RigidMotion> motion;     ///< null where it rests or deforms
   std::shared_ptr<const MeshSequence> sequence;  ///< null but where it deforms; `shape` is then its first frame
 
+  std::shared_ptr<RigidMotion> led_motion;  ///< where a host leads it: the same as `motion`, or `sequence`
+  std::shared_ptr<MeshSequence> led_sequence;
+
   double thickened = 0.0;  ///< m, to either side, for nodes to see it; its shape has that in it
-  Periods periods{};  ///< of space, for one that moves; the shape of one that rests has them in it
+  Periods periods{};       ///< of space, for one that moves; the shape of one that rests has them in it
 
   bool moves() const { return motion != nullptr || sequence != nullptr; }
 

@@ -78,7 +78,10 @@ Flow flow_of(const Emitter& emitter, double spacing, int flat_axis) {
   flow.end = emitter.end;
   flow.particle_volume = spacing * spacing * spacing / static_cast<double>(emitter.particles_per_cell);
   const bool volume = emitter.type == Emitter::Type::kVolume;
-  const double per_second = volume ? emitter.rate : emitter.speed * mouth_of(emitter, spacing, flat_axis).area;
+  const bool host = emitter.type == Emitter::Type::kHost;
+  const double per_second = host     ? 0.0
+                            : volume ? emitter.rate
+                                     : emitter.speed * mouth_of(emitter, spacing, flat_axis).area;
   flow.rate = per_second / flow.particle_volume;
   double most = 1e18;
   if (emitter.most_particles > 0) most = static_cast<double>(emitter.most_particles);

@@ -18,7 +18,7 @@ namespace repose {
 
 /// What a scene says of an emitter.
 struct Emitter {
-  enum class Type { kDisc, kRectangle, kVolume };
+  enum class Type { kDisc, kRectangle, kVolume, kHost };
 
   std::string name;
   std::string material;

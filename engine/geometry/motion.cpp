@@ -89,6 +89,38 @@ Result<std::shared_ptr<const RigidMotion>> RigidMotion::make(const MotionDescrip
   return std::shared_ptr<const RigidMotion>(new RigidMotion(description));
 }
 
+std::shared_ptr<RigidMotion> RigidMotion::led(const Vec3& pivot) {
+  MotionDescription description;
+  description.given = true;
+  description.pivot = pivot;
+  std::shared_ptr<RigidMotion> motion(new RigidMotion(description));
+  motion->lead_.emplace();
+  return motion;
+}
+
+void RigidMotion::lead(double time, double seconds, const Placement& to) {
+  Lead next{time, time + seconds, pose(time), to};
+  if (seconds > 0.0) {
+    next.speed = (to.point(description_.pivot) - next.from.point(description_.pivot)).norm() / seconds;
+    next.spin =
+        Eigen::Quaterniond(next.from.rotation).angularDistance(Eigen::Quaterniond(to.rotation)) / seconds;
+  } else {
+    next.from = to;
+  }
+  lead_ = next;
+}
+
+Placement RigidMotion::between(const Lead& lead, double time) const {
+  if (time <= lead.begin || time >= lead.end) return time >= lead.end ? lead.to : lead.from;
+  const double u = (time - lead.begin) / (lead.end - lead.begin);
+  const Vec3 from = lead.from.point(description_.pivot), to = lead.to.point(description_.pivot);
+  const Mat3 rotation = lead.spin == 0.0 ? lead.to.rotation
+                                         : Eigen::Quaterniond(lead.from.rotation)
+                                               .slerp(u, Eigen::Quaterniond(lead.to.rotation))
+                                               .toRotationMatrix();
+  return {rotation, from + u * (to - from) - rotation * description_.pivot};
+}
+
 RigidMotion::RigidMotion(const MotionDescription& description) : description_(description) {
   const auto& keys = description_.keys;
   Vec3 axis = Vec3::Zero();
@@ -173,6 +205,7 @@ Placement RigidMotion::at(const Stretch& s, double time) const {
 }
 
 Placement RigidMotion::pose(double time) const {
+  if (lead_) return between(*lead_, time);
   const auto& keys = description_.keys;
   if (description_.repeat) time = std::fmod(time, keys.back().time);
   if (time <= keys.front().time || time >= keys.back().time) {
@@ -194,6 +227,7 @@ double RigidMotion::fastest_of_keys(double from, double to, double radius) const
 }
 
 double RigidMotion::fastest(double from, double to, double radius) const {
+  if (lead_) return lead_->begin < to && lead_->end > from ? lead_->speed + lead_->spin * radius : 0.0;
   if (!description_.repeat) return fastest_of_keys(from, to, radius);
   const double period = description_.keys.back().time;
   const double begin = std::fmod(from, period), end = begin + (to - from);

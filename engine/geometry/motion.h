@@ -1,8 +1,10 @@
 // Repose: how a rigid solid moves: keyframes of a turn about a pivot and a translation. The pose is a pure
-// function of time, so a state needs to remember nothing of it and a run goes on from any moment.
+// function of time, so a state needs to remember nothing of it and a run goes on from any moment. Or a host
+// leads it, pose by pose: then the host remembers.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/base/params.h"
@@ -42,6 +44,13 @@ class RigidMotion {
   /// Errors: 65, keys that are not finite, not in order of time, or that would let a period jump.
   static Result<std::shared_ptr<const RigidMotion>> make(const MotionDescription& description);
 
+  /// One that a host leads, turned about `pivot`: where its shape was placed, until lead() is called.
+  static std::shared_ptr<RigidMotion> led(const Vec3& pivot);
+  /// Of one that is led, while nothing else asks: it goes straight from where it stands at `time` (s) to a
+  /// pose, the pivot along a line and at constant rates, within `seconds`; with none it stands there at once.
+  void lead(double time, double seconds, const Placement& to);
+  bool is_led() const { return lead_.has_value(); }
+
   /// Where the solid stands at a time (s): x -> rotation (x - pivot) + pivot + translation.
   Placement pose(double time) const;
 
@@ -63,7 +72,15 @@ class RigidMotion {
     double speed, spin;  // bounds of the rates: m/s, rad/s
   };
 
+  /// From one pose of a host to the next.
+  struct Lead {
+    double begin = 0.0, end = 0.0;  // s
+    Placement from, to;
+    double speed = 0.0, spin = 0.0;  // of the pivot, m/s, and about it, rad/s
+  };
+
   explicit RigidMotion(const MotionDescription& description);
+  Placement between(const Lead& lead, double time) const;
   Stretch stretch(std::size_t k, bool one_axis) const;
   Vec4 rate(std::size_t k, bool one_axis) const;
   Placement at(const Stretch& stretch, double time) const;
@@ -73,6 +90,7 @@ class RigidMotion {
   MotionDescription description_;
   std::vector<Vec4> values_;  // per key, with angles about one direction of the line where there is one
   std::vector<Stretch> stretches_;
+  std::optional<Lead> lead_;
 };
 
 }  // namespace repose

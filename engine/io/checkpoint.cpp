@@ -4,11 +4,13 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <type_traits>
+#include <vector>
 
 #include "engine/io/atomic_file.h"
 
@@ -72,27 +74,45 @@ std::uint64_t checksum_of(const void* data, std::size_t bytes) {
   return crc32_z(crc32_z(0, nullptr, 0), static_cast<const Bytef*>(data), bytes);
 }
 
-Result<void> write_chunk(AtomicFile& file, const std::string& name, const void* data, std::size_t bytes) {
+Result<void> write_chunk(const WriteBytes& file, const std::string& name, const void* data, std::size_t bytes) {
   ChunkHead head;
   std::strncpy(head.name, name.c_str(), sizeof head.name - 1);
   head.bytes = bytes;
   head.checksum = checksum_of(data, bytes);
-  if (auto written = file.write(&head, sizeof head); !written) return written;
-  return file.write(data, bytes);
+  if (auto written = file(&head, sizeof head); !written) return written;
+  return file(data, bytes);
 }
 
 /// Reads chunks in the order in which they were written; every error names file and chunk.
 class ChunkReader {
  public:
-  static Result<ChunkReader> open(const std::string& path) {
-    ChunkReader reader(path);
-    if (!reader.file_) return Error{ErrorKind::kNoInput, "cannot be read; is the path right?", path};
+  static Result<ChunkReader> open(std::istream& stream, const std::string& name) {
+    ChunkReader reader(stream, name);
     char magic[sizeof kMagic];
-    reader.file_.read(magic, sizeof magic);
-    if (!reader.file_ || std::memcmp(magic, kMagic, sizeof magic) != 0) {
-      return Error{ErrorKind::kIo, "is not a checkpoint of this version of Repose", path};
+    stream.read(magic, sizeof magic);
+    if (!stream || std::memcmp(magic, kMagic, sizeof magic) != 0) {
+      return Error{ErrorKind::kIo, "is not a checkpoint of this version of Repose", name};
     }
     return reader;
+  }
+
+  /// Reads to the end and keeps nothing.
+  Result<void> verify() {
+    std::vector<char> piece(std::size_t{1} << 20);
+    for (ChunkHead head; file_.read(reinterpret_cast<char*>(&head), sizeof head);) {
+      head.name[sizeof head.name - 1] = '\0';
+      std::uint64_t left = head.bytes;
+      uLong sum = crc32_z(0, nullptr, 0);
+      while (left > 0) {
+        const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(left, piece.size()));
+        if (!file_.read(piece.data(), static_cast<std::streamsize>(now)))
+          return damaged(head.name, "is cut short");
+        sum = crc32_z(sum, reinterpret_cast<const Bytef*>(piece.data()), now);
+        left -= now;
+      }
+      if (sum != head.checksum) return damaged(head.name, "does not have its checksum");
+    }
+    return file_.gcount() == 0 ? Result<void>() : damaged("?", "is cut short");
   }
 
   Result<void> read(const std::string& name, void* data, std::size_t bytes) {
@@ -109,14 +129,20 @@ class ChunkReader {
   }
 
  private:
-  explicit ChunkReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {}
+  ChunkReader(std::istream& stream, const std::string& name) : path_(name), file_(stream) {}
   Error damaged(const std::string& chunk, const char* how) const {
     return {ErrorKind::kIo, "chunk '" + chunk + "' " + how + "; use an older checkpoint", path_};
   }
 
   std::string path_;
-  std::ifstream file_;
+  std::istream& file_;
 };
+
+Result<std::ifstream> open_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is the path right?", path};
+  return file;
+}
 
 /// Visits every array of a set with the name of its chunk.
 template <class Set, class Visit>
@@ -174,7 +200,7 @@ Result<void> for_each_rest(AnyRest& rest, Visit visit) {
   return visit("rest.way", rest.way.data(), rest.way.size() * sizeof(rest.way[0]));
 }
 
-Result<void> write_rest(AtomicFile& file, const RestField& rest) {
+Result<void> write_rest(const WriteBytes& file, const RestField& rest) {
   return for_each_rest(rest, [&](const std::string& name, const void* data, std::size_t bytes) {
     return write_chunk(file, name, data, bytes);
   });
@@ -194,7 +220,7 @@ Result<void> for_each_motion(AnyMotion& motion, Visit visit) {
 }
 
 template <class Real>
-Result<void> write_motion(AtomicFile& file, const LastMotion<Real>& motion) {
+Result<void> write_motion(const WriteBytes& file, const LastMotion<Real>& motion) {
   const std::uint64_t count = motion.blocks.size();
   if (auto written = write_chunk(file, "motion.count", &count, sizeof count); !written) return written;
   if (auto written = write_chunk(file, "motion.gained", &motion.gained, sizeof motion.gained); !written)
@@ -236,10 +262,8 @@ Result<Head> read_head(ChunkReader& reader) {
 }  // namespace
 
 template <class Real>
-Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_hash, const std::string& path) {
-  auto file = AtomicFile::create(path);
-  if (!file) return file.error();
-  if (auto written = file->write(kMagic, sizeof kMagic); !written) return written;
+Result<void> write_checkpoint(const State<Real>& state, const std::string& scene_hash, const WriteBytes& file) {
+  if (auto written = file(kMagic, sizeof kMagic); !written) return written;
   Head head;
   std::strncpy(head.scene_hash, scene_hash.c_str(), sizeof head.scene_hash - 1);
   head.precision_bytes = sizeof(Real);
@@ -248,41 +272,58 @@ Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_
   head.occupied = state.grid.occupied_blocks().size();
   head.counters = state.counters;
   const std::string head_bytes = bytes_of(head);
-  if (auto written = write_chunk(*file, "head", head_bytes.data(), head_bytes.size()); !written) return written;
+  if (auto written = write_chunk(file, "head", head_bytes.data(), head_bytes.size()); !written) return written;
   std::vector<Index3> occupied_blocks;
   for (const std::int32_t occupied : state.grid.occupied_blocks()) {
     occupied_blocks.push_back(state.grid.blocks()[static_cast<std::size_t>(occupied)]);
   }
   if (auto written =
-          write_chunk(*file, "blocks", occupied_blocks.data(), occupied_blocks.size() * sizeof(Index3));
+          write_chunk(file, "blocks", occupied_blocks.data(), occupied_blocks.size() * sizeof(Index3));
       !written) {
     return written;
   }
   const std::vector<std::uint64_t> counts = counts_of(state);
-  if (auto written = write_chunk(*file, "counts", counts.data(), counts.size() * sizeof counts[0]); !written) {
+  if (auto written = write_chunk(file, "counts", counts.data(), counts.size() * sizeof counts[0]); !written) {
     return written;
   }
   if (state.rest.on) {
-    if (auto written = write_rest(*file, state.rest); !written) return written;
+    if (auto written = write_rest(file, state.rest); !written) return written;
   }
   if (state.last_motion.on) {
-    if (auto written = write_motion(*file, state.last_motion); !written) return written;
+    if (auto written = write_motion(file, state.last_motion); !written) return written;
   }
   const std::size_t tally_bytes = state.tallies.size() * sizeof(double);
-  if (auto written = write_chunk(*file, "tallies", state.tallies.data(), tally_bytes); !written) return written;
+  if (auto written = write_chunk(file, "tallies", state.tallies.data(), tally_bytes); !written) return written;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     auto written =
         for_each_array(state.sets[k], k, [&](const std::string& name, const void* data, std::size_t bytes) {
-          return write_chunk(*file, name, data, bytes);
+          return write_chunk(file, name, data, bytes);
         });
     if (!written) return written;
   }
-  return file->commit();
+  return {};
 }
 
 template <class Real>
-Result<void> load_checkpoint(const std::string& path, const std::string& scene_hash, State<Real>& state) {
-  auto reader = ChunkReader::open(path);
+Result<void> save_checkpoint(const State<Real>& state, const std::string& scene_hash, const std::string& path) {
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  auto written = write_checkpoint(
+      state, scene_hash, [&file](const void* data, std::size_t bytes) { return file->write(data, bytes); });
+  if (!written) return written;
+  return file->commit();
+}
+
+Result<void> verify_checkpoint(std::istream& bytes, const std::string& name) {
+  auto reader = ChunkReader::open(bytes, name);
+  if (!reader) return reader.error();
+  return reader->verify();
+}
+
+template <class Real>
+Result<void> read_checkpoint(std::istream& bytes, const std::string& path, const std::string& scene_hash,
+                             State<Real>& state) {
+  auto reader = ChunkReader::open(bytes, path);
   if (!reader) return reader.error();
   auto head = read_head(*reader);
   if (!head) return head.error();
@@ -312,8 +353,8 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   if (auto read = reader->read("tallies", state.tallies.data(), tally_bytes); !read) return read;
   for (std::size_t k = 0; k < state.sets.size(); ++k) {
     state.sets[k].begin.resize(head->occupied + 1);
-    auto read = for_each_array(state.sets[k], k, [&](const std::string& name, void* data, std::size_t bytes) {
-      return reader->read(name, data, bytes);
+    auto read = for_each_array(state.sets[k], k, [&](const std::string& name, void* data, std::size_t count) {
+      return reader->read(name, data, count);
     });
     if (!read) return read;
   }
@@ -325,17 +366,30 @@ Result<void> load_checkpoint(const std::string& path, const std::string& scene_h
   return {};
 }
 
+template <class Real>
+Result<void> load_checkpoint(const std::string& path, const std::string& scene_hash, State<Real>& state) {
+  auto file = open_file(path);
+  if (!file) return file.error();
+  return read_checkpoint(*file, path, scene_hash, state);
+}
+
 Result<CheckpointHeader> read_checkpoint_header(const std::string& path) {
-  auto reader = ChunkReader::open(path);
+  auto file = open_file(path);
+  if (!file) return file.error();
+  auto reader = ChunkReader::open(*file, path);
   if (!reader) return reader.error();
   auto head = read_head(*reader);
   if (!head) return head.error();
   return CheckpointHeader{head->scene_hash, head->precision_bytes, head->particles, head->counters};
 }
 
-template Result<void> save_checkpoint(const State<float>&, const std::string&, const std::string&);
-template Result<void> save_checkpoint(const State<double>&, const std::string&, const std::string&);
-template Result<void> load_checkpoint(const std::string&, const std::string&, State<float>&);
-template Result<void> load_checkpoint(const std::string&, const std::string&, State<double>&);
+#define REPOSE_INSTANTIATE(Real)                                                                              \
+  template Result<void> write_checkpoint(const State<Real>&, const std::string&, const WriteBytes&);          \
+  template Result<void> save_checkpoint(const State<Real>&, const std::string&, const std::string&);          \
+  template Result<void> read_checkpoint(std::istream&, const std::string&, const std::string&, State<Real>&); \
+  template Result<void> load_checkpoint(const std::string&, const std::string&, State<Real>&);
+REPOSE_INSTANTIATE(float)
+REPOSE_INSTANTIATE(double)
+#undef REPOSE_INSTANTIATE
 
 }  // namespace repose

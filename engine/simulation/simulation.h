@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,11 @@ struct SimulationOptions {
   bool allow_outside_paths = false;
   /// Bytes that the simulation may take, with what writing its frames takes; 0: 85 % of the machine's memory.
   double memory_limit = 0.0;
+  bool log_contacts = false;  ///< for contact(); costs a little
 };
+
+/// Takes bytes, piece by piece (engine/io/checkpoint.h).
+using WriteBytes = std::function<Result<void>(const void* data, std::size_t bytes)>;
 
 /// Called after each step; false stops the frame at once, with the state as it is.
 using StepCallback = std::function<bool(const StepReport&, const Counters&)>;
@@ -54,6 +59,9 @@ class Simulation {
   /// step. Error 78 when the grid, or what emitters make, needs more memory than may be used, and when ids are
   /// used up; sound() tells whether the state can still be saved.
   virtual Result<FrameReport> advance_frame(const StepCallback& callback = {}) = 0;
+
+  /// The same, to a time `seconds` (s) later; frames that end on the way end as they would.
+  virtual Result<FrameReport> advance(double seconds, const StepCallback& callback = {}) = 0;
 
   /// Leaves the step at hand, or the next one, as it was before it: advance_frame returns with its frame
   /// unfinished, step with a report that was interrupted, and the next call goes on. May be called by any
@@ -95,14 +103,51 @@ class Simulation {
   virtual const IntegratorChoice& integrator() const = 0;
   virtual Target target() const = 0;
   virtual int threads() const = 0;
+  virtual bool z_up() const = 0;  ///< else y
   virtual const std::vector<Solid>& solids() const = 0;
   /// What the scene most likely does not mean, though it is no error. Of the scene and where its bodies start
   /// when it is made; steps may add to it, each kind once.
   virtual const std::vector<std::string>& warnings() const = 0;
 
-  /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74, 78.
+  /// The state on disk, bit for bit. Errors: 73, 74; 65, 66, 74, 78. A file that is damaged changes nothing.
   virtual Result<void> save(const std::string& path) const = 0;
   virtual Result<void> load(const std::string& path) = 0;
+  /// The same bytes to and from memory. Errors: those of `write`; 65, 74, 78.
+  virtual Result<void> save_to(const WriteBytes& write) const = 0;
+  virtual Result<void> load_from(std::span<const std::byte> bytes) = 0;
+
+  // What hosts do between calls that advance; none of it is known to a saved state but what it did to
+  // particles.
+
+  /// The sets, and where their numbers lie until a call that advances, loads, or is named below.
+  virtual std::vector<SetView> sets() const = 0;
+  /// Where the corners of the blocks lie that SetView::begin speaks of, m.
+  virtual std::vector<Triple> block_corners() const = 0;
+
+  /// A collider that a host leads (Lead::kPose) goes to a pose within `seconds`, from where it stands; with
+  /// none it stands there at once. Errors: 64 no such collider, not led, or no pose of a rigid body.
+  virtual Result<void> move_solid(const std::string& name, const Pose& pose, double seconds) = 0;
+  /// A collider that a host leads by meshes (Lead::kMesh) comes to new vertices (x y z of each, m) by the end
+  /// of the stretch of time that begins now; `at_once`: it stands there now. Without triangles those of its
+  /// last mesh hold. Errors: 64, 65 no solid, 78.
+  virtual Result<void> deform_solid(const std::string& name, std::span<const double> vertices,
+                                    std::span<const std::int32_t> triangles, bool at_once) = 0;
+
+  /// Particles begin at an emitter of type "host", at positions (x y z of each, m) with velocities (likewise,
+  /// m/s; or none: at rest). Returns the id of the first; the others follow. Errors: 64, 78.
+  virtual Result<std::uint32_t> add_particles(const std::string& emitter, std::span<const double> positions,
+                                              std::span<const float> velocities) = 0;
+  /// Particles of ids end; returns how many there were. Error 64: the scene has no emitter of type "host".
+  virtual Result<std::size_t> remove_particles(std::span<const std::uint32_t> ids) = 0;
+
+  /// What the material did to a collider over the last call that advanced. Error 64: no such collider, or
+  /// SimulationOptions::log_contacts was not asked for.
+  virtual Result<ContactFigures> contact(const std::string& name) const = 0;
+
+  /// Goes on by another scene, such as one of another gravity or friction: as if the state had been saved, and
+  /// loaded into a simulation of that scene. Errors: those of create, and 65 where the state cannot go on so,
+  /// with other bodies, grid or probes; nothing has then changed.
+  virtual Result<void> change(const Scene& scene) = 0;
 };
 
 /// The hash of a scene's identity, 16 hexadecimal digits: equal where a state of one goes on in the other.

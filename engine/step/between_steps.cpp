@@ -55,10 +55,28 @@ Result<bool> BetweenSteps<Real>::carry_out_events(State<Real>& state, Moment mom
     pass.run(state, *edit);
   }
   if (!edit || edit->empty()) return false;
+  return apply(state, std::move(*edit), ledger, unseen_motion);
+}
+
+template <class Real>
+Result<bool> BetweenSteps<Real>::carry_out(State<Real>& state,
+                                           const std::function<void(State<Real>&, ParticleEdit<Real>&)>& say) {
+  const PhaseTimer timer(profile_, Phase::kSort);
+  const Ledger before = state.ledger;
+  ParticleEdit<Real> edit(state, threads_);
+  say(state, edit);
+  if (edit.empty()) return false;
+  return apply(state, std::move(edit), before, state.counters.unseen_motion);
+}
+
+/// Where that is refused nothing has begun or ended.
+template <class Real>
+Result<bool> BetweenSteps<Real>::apply(State<Real>& state, ParticleEdit<Real> edit, const Ledger& before,
+                                       double unseen_motion) {
   active_.before_sort(state);
-  const auto new_blocks = apply_edit(std::move(*edit), state, plan_.transfer.ownership());
-  if (!new_blocks) {  // nothing has begun or ended
-    state.ledger = ledger;
+  const auto new_blocks = apply_edit(std::move(edit), state, plan_.transfer.ownership());
+  if (!new_blocks) {
+    state.ledger = before;
     state.counters.unseen_motion = unseen_motion;
     return new_blocks.error();
   }

@@ -2,6 +2,8 @@
 // (engine/state/block_sort.h).
 #pragma once
 
+#include <functional>
+
 #include "engine/base/profile.h"
 #include "engine/state/block_sort.h"
 #include "engine/sweep/active_blocks.h"
@@ -17,6 +19,8 @@ class BetweenSteps {
   /// Carries out the events that are due. Returns whether particles have begun or ended. Error 78: no ids are
   /// left; nothing has then changed.
   Result<bool> carry_out_events(State<Real>& state, Moment moment);
+  /// The same of what somebody from outside says begins and ends.
+  Result<bool> carry_out(State<Real>& state, const std::function<void(State<Real>&, ParticleEdit<Real>&)>& say);
   /// Brings the order up to date, if it is due. Returns whether the blocks are not those that what follows the
   /// topology knows.
   bool sort_if_due(State<Real>& state);
@@ -27,6 +31,8 @@ class BetweenSteps {
   std::size_t scratch_bytes() const { return sort_.scratch_bytes(); }
 
  private:
+  Result<bool> apply(State<Real>& state, ParticleEdit<Real> edit, const Ledger& before, double unseen_motion);
+
   const StepPlan<Real>& plan_;
   Threads& threads_;
   ActiveBlocks<Real>& active_;

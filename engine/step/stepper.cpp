@@ -35,7 +35,7 @@ StepPlan<Real> with_scratch(StepPlan<Real> plan) {
 }  // namespace
 
 template <class Real>
-Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
+Stepper<Real>::Stepper(StepPlan<Real> plan, int threads, const StopWish* wish)
     : plan_(with_scratch(std::move(plan))),
       threads_(threads),
       active_(plan_),
@@ -43,7 +43,7 @@ Stepper<Real>::Stepper(StepPlan<Real> plan, int threads)
       moving_(plan_),
       acceptance_(plan_),
       energy_(plan_),
-      sweep_(plan_, threads_, active_.set(), wish_),
+      sweep_(plan_, threads_, active_.set(), wish == nullptr ? nobody_ : *wish),
       arena_(plan_.scratch.place_arena(kArena)),
       before_forces_(plan_.transfer.figures().keeps_velocity ? plan_.scratch.place_arena(kArenaBeforeForces)
                                                              : 0) {
@@ -262,6 +262,17 @@ Result<void> Stepper<Real>::end_frame(State<Real>& state) {
   auto changed = change_particles(state, Moment::kEndOfFrame);
   if (changed && unmeasured_) between_.sort_if_due(state);
   return changed;
+}
+
+template <class Real>
+Result<void> Stepper<Real>::edit_particles(State<Real>& state,
+                                           const std::function<void(State<Real>&, ParticleEdit<Real>&)>& say) {
+  const CleanFloatingPoint clean;
+  const auto changed = between_.carry_out(state, say);
+  if (!changed) return changed.error();
+  unmeasured_ = unmeasured_ || *changed;
+  if (*changed) between_.sort_if_due(state);
+  return {};
 }
 
 template <class Real>

@@ -15,7 +15,8 @@ namespace repose {
 template <class Real>
 class Stepper {
  public:
-  Stepper(StepPlan<Real> plan, int threads);
+  /// `wish`, where there is one: said by any thread, it leaves the step at hand, and no particle has changed.
+  Stepper(StepPlan<Real> plan, int threads, const StopWish* wish = nullptr);
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
@@ -43,8 +44,10 @@ class Stepper {
   /// Carries out the events that are due, then brings the order up to date if there were any; a step does so by
   /// itself. Error 78: no ids are left.
   Result<void> end_frame(State<Real>& state);
-  /// Said by any thread, it leaves the step at hand, and no particle has changed.
-  StopWish& wish() { return wish_; }
+  /// Lets a host say what begins and what ends, and brings the order up to date. Error 78: no ids are left;
+  /// nothing has then changed.
+  Result<void> edit_particles(State<Real>& state,
+                              const std::function<void(State<Real>&, ParticleEdit<Real>&)>& say);
 
  private:
   struct Count {
@@ -65,9 +68,9 @@ class Stepper {
   void count_segments(Counters& counters) const;
 
   StepPlan<Real> plan_;
-  StopWish wish_;
   Threads threads_;
   Profile profile_;
+  StopWish nobody_;
   ActiveBlocks<Real> active_;
   BetweenSteps<Real> between_;
   MovingNodes<Real> moving_;

@@ -118,9 +118,12 @@ TEST(SceneSchema, Forms_AreClosedAndShareCommonKeys) {
   EXPECT_FALSE(sphere["additionalProperties"].asBool());
   EXPECT_TRUE(form(shape, "box")["properties"].isMember("upper"));
   const Json::Value& emitter = property(schema, "emitters")["items"];
-  EXPECT_EQ(emitter["oneOf"].size(), 3u);
+  EXPECT_EQ(emitter["oneOf"].size(), 4u);
   EXPECT_TRUE(form(emitter, "disc")["properties"].isMember("speed"));
   EXPECT_TRUE(form(emitter, "volume")["properties"].isMember("rate"));
+  EXPECT_TRUE(form(emitter, "volume")["properties"].isMember("start"));
+  EXPECT_FALSE(form(emitter, "host")["properties"].isMember("start"));
+  EXPECT_TRUE(form(emitter, "host")["properties"].isMember("particles_per_cell"));
 }
 
 TEST(SceneSchema, ListOfNames_IsClosedAndHasNoneTwice) {

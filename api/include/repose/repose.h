@@ -1,0 +1,466 @@
+/**
+ * @file repose.h
+ * Repose for programs that embed it: sand by the Material Point Method. This header is the only binary
+ * interface of the library; it is C99, and names no other library. repose.hpp is a C++17 wrapper over it,
+ * docs/embedding.md the guide.
+ *
+ * Units are SI (m, s, kg, N, Pa), angles degrees. Positions are in the frame of the scene, whose "up" says
+ * whether y or z points up.
+ *
+ * Errors. Functions return a repose_status, REPOSE_OK or what kind of refusal it is; the message, and the key
+ * or the file that it is about, are kept per thread (repose_error_message). No exception leaves the library. A
+ * handle that was destroyed, or never made, is answered with REPOSE_ERROR_HANDLE.
+ *
+ * Structs begin with their size and version. Make them by the inline function of their name
+ * (repose_report_init), which sets both and all else to its default; REPOSE_ERROR_VERSION answers a struct of
+ * another version.
+ *
+ * Threads. Any thread may call any function. An engine does one thing at a time: while a call is under way on
+ * it, others on the same engine, also those from a callback, are answered with REPOSE_ERROR_BUSY, all but
+ * repose_interrupt, repose_engine_destroy and repose_view_check. Calls on different engines run side by side.
+ * Callbacks are called on the thread of the call that they belong to.
+ *
+ * Memory. The library copies what it is given before a call returns. Pointers that it hands out belong to it;
+ * each says how long it is valid.
+ */
+#ifndef REPOSE_REPOSE_H
+#define REPOSE_REPOSE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(REPOSE_BUILDS_LIBRARY) && defined(__GNUC__)
+#define REPOSE_API __attribute__((visibility("default")))
+#else
+#define REPOSE_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The version of this header: 1000000 major + 1000 minor + patch. */
+#define REPOSE_VERSION 1000
+/** The version of all structs of this header. */
+#define REPOSE_STRUCT_VERSION 1
+
+/** What a call came to. The values of the first group are the exit codes of the command `repose`. */
+typedef int32_t repose_status;
+enum {
+  REPOSE_OK = 0,
+  REPOSE_ERROR_USAGE = 64,        /**< wrong arguments, or a call that does not go with this scene */
+  REPOSE_ERROR_SCENE = 65,        /**< a scene, or geometry that it names, is wrong */
+  REPOSE_ERROR_NO_INPUT = 66,     /**< an input file does not exist or cannot be read */
+  REPOSE_ERROR_PHYSICS = 70,      /**< the physics gave out; the state is that of the last step that was made */
+  REPOSE_ERROR_INTERNAL = 71,     /**< a bug in Repose */
+  REPOSE_ERROR_CANNOT_WRITE = 73, /**< the output cannot be written */
+  REPOSE_ERROR_IO = 74,           /**< reading or writing failed midway, or bytes are damaged */
+  REPOSE_ERROR_MEMORY = 78,       /**< needs more memory than there is, or than may be used */
+
+  REPOSE_ERROR_HANDLE = 100,   /**< a handle that is null, was destroyed, or is of another kind */
+  REPOSE_ERROR_ARGUMENT = 101, /**< a null pointer, an index or a size that cannot be */
+  REPOSE_ERROR_VERSION = 102,  /**< a struct of a version, or a size, that this library does not know */
+  REPOSE_ERROR_BUSY = 103,     /**< another call on this engine is under way */
+  REPOSE_ERROR_STALE = 104     /**< a view whose numbers may lie elsewhere by now */
+};
+
+/** A scene being put together. Handles are numbers, no addresses; value 0 is none. */
+typedef struct repose_scene {
+  uint64_t value;
+} repose_scene;
+/** A simulation. */
+typedef struct repose_engine {
+  uint64_t value;
+} repose_engine;
+/** A copy of the particles at one moment. */
+typedef struct repose_points {
+  uint64_t value;
+} repose_points;
+
+/** The version of the library, as REPOSE_VERSION. */
+REPOSE_API uint32_t repose_version(void);
+
+/** "no such handle" for REPOSE_ERROR_HANDLE, and so on; valid for ever. */
+REPOSE_API const char* repose_status_text(repose_status status);
+
+/**
+ * @name Of the last call of this thread that did not return REPOSE_OK
+ * The message names what is wrong and what would be right, several lines where several things are wrong with a
+ * scene; the key is a path of the scene ("grid.spacing"), a file, or the name of an argument; the place is
+ * "file:line:column" where a scene's text has one. Up to `capacity` bytes are copied, always ended by a zero
+ * where capacity > 0. Returns the length of the whole text without the zero, so that a capacity of 0 asks for
+ * it.
+ * @{
+ */
+REPOSE_API repose_status repose_error_status(void);
+REPOSE_API size_t repose_error_message(char* buffer, size_t capacity);
+REPOSE_API size_t repose_error_key(char* buffer, size_t capacity);
+REPOSE_API size_t repose_error_place(char* buffer, size_t capacity);
+/** @} */
+
+/* Scenes ------------------------------------------------------------------------------------------------------
+ */
+
+enum { REPOSE_QUALITY_STANDARD = 0, REPOSE_QUALITY_DRAFT = 1, REPOSE_QUALITY_REFERENCE = 2 };
+
+typedef struct repose_scene_options {
+  uint32_t size, version;
+  int32_t quality;             /**< as the command's --quality */
+  int32_t allow_outside_paths; /**< not 0: meshes may lie outside the scene's folder */
+} repose_scene_options;
+
+/**
+ * Reads a scene file. `options` may be null.
+ * Errors: NO_INPUT, SCENE.
+ */
+REPOSE_API repose_status repose_scene_from_file(const char* path, const repose_scene_options* options,
+                                                repose_scene* scene);
+
+/**
+ * Reads a scene from `length` bytes of text; relative paths in it start at `folder` ("." where null), and
+ * errors call it `name` ("scene" where null). Error: SCENE.
+ */
+REPOSE_API repose_status repose_scene_from_text(const char* text, size_t length, const char* name,
+                                                const char* folder, const repose_scene_options* options,
+                                                repose_scene* scene);
+
+/** A scene without a key, to be filled by repose_scene_set. */
+REPOSE_API repose_status repose_scene_empty(const char* folder, const repose_scene_options* options,
+                                            repose_scene* scene);
+
+/**
+ * Sets a key, as the command's --set: `key` is a path ("grid.spacing", "colliders.glass.friction",
+ * "bodies[0]"), `value` JSON, else taken as text. It is looked at when repose_scene_check or
+ * repose_engine_create reads the scene. Error: ARGUMENT.
+ */
+REPOSE_API repose_status repose_scene_set(repose_scene scene, const char* key, const char* value);
+
+/** Reads the scene with all that was set. Error: SCENE, with a line for each thing that is wrong. */
+REPOSE_API repose_status repose_scene_check(repose_scene scene);
+
+/**
+ * Says that the host will move a rigid collider (repose_move_collider), or deform one that is a mesh
+ * (repose_deform_collider) `rate` times a second: usually the scene's frames per second, or a multiple of it.
+ * Such a collider has no "motion" and no "frames" of its own. Errors come with repose_engine_create.
+ */
+REPOSE_API repose_status repose_scene_lead_pose(repose_scene scene, const char* collider);
+REPOSE_API repose_status repose_scene_lead_mesh(repose_scene scene, const char* collider, double rate);
+
+/**
+ * The scene as compact JSON, after all that was set and with expressions evaluated. Copies as
+ * repose_error_message does; `length` may be null. Error: SCENE.
+ */
+REPOSE_API repose_status repose_scene_json(repose_scene scene, char* buffer, size_t capacity, size_t* length);
+
+/** Engines that were made of it stay as they are. */
+REPOSE_API repose_status repose_scene_destroy(repose_scene scene);
+
+/* Engines -----------------------------------------------------------------------------------------------------
+ */
+
+enum { REPOSE_LOG_WARNING = 1 };
+/** Told what a scene most likely does not mean, though it is no error. `message` is valid within the call. */
+typedef void (*repose_log_fn)(void* user, int32_t level, const char* message);
+
+enum { REPOSE_TARGET_BEST = 0, REPOSE_TARGET_BASELINE = 1, REPOSE_TARGET_AVX2 = 2, REPOSE_TARGET_AVX512 = 3 };
+
+typedef struct repose_engine_options {
+  uint32_t size, version;
+  int32_t threads;     /**< of an arena of its own; 0: as many as the machine has. They change no bit */
+  int32_t target;      /**< instruction set; AVX2 and AVX-512 give the same bits */
+  double memory_limit; /**< bytes that it may take; 0: 85 % of the machine's. What would need more is refused */
+  int32_t log_contacts; /**< not 0: repose_contact can be asked; costs a little */
+  int32_t reserved;     /**< 0 */
+  repose_log_fn log;    /**< may be null; also told while the engine is made */
+  void* log_user;
+} repose_engine_options;
+
+/**
+ * Makes a simulation: builds solids, fills bodies with particles. `options` may be null. The scene may be
+ * destroyed or changed afterwards. Errors: SCENE, NO_INPUT, MEMORY, USAGE.
+ */
+REPOSE_API repose_status repose_engine_create(repose_scene scene, const repose_engine_options* options,
+                                              repose_engine* engine);
+
+/** A call that is under way on another thread is interrupted and ends first. */
+REPOSE_API repose_status repose_engine_destroy(repose_engine engine);
+
+typedef struct repose_report {
+  uint32_t size, version;
+  int64_t frame;            /**< frames completed */
+  int64_t step;             /**< steps completed, since the scene began */
+  double time;              /**< s, of the scene */
+  int64_t steps;            /**< made by this call */
+  double least_dt, most_dt; /**< s, of those; 0 where there were none */
+  int64_t redone;           /**< steps that were tried again by half */
+  int32_t complete;         /**< 1: the call got as far as it was to; 0: interrupted, call again to go on */
+  int32_t reserved;
+  double seconds; /**< of wall time */
+} repose_report;
+
+/**
+ * @name Advancing
+ * To the end of the frame at hand; `seconds` of the scene's time further, with frames that end on the way; or
+ * by one step, which ends at the frame at the latest. `report` may be null. All three go along one line of time
+ * and may be mixed. Errors: PHYSICS, MEMORY; the state is then that of the last step that was made.
+ * @{
+ */
+REPOSE_API repose_status repose_advance_frame(repose_engine engine, repose_report* report);
+REPOSE_API repose_status repose_advance_seconds(repose_engine engine, double seconds, repose_report* report);
+REPOSE_API repose_status repose_advance_step(repose_engine engine, repose_report* report);
+/** @} */
+
+/**
+ * Leaves the step at hand, or the next one, as it was before it: the call that advances returns REPOSE_OK with
+ * `complete` 0. From any thread, or a callback.
+ */
+REPOSE_API repose_status repose_interrupt(repose_engine engine);
+
+typedef struct repose_progress {
+  uint32_t size, version;
+  int64_t frame; /**< frames completed */
+  int64_t step;  /**< steps completed */
+  double time;   /**< s, of the scene */
+  double dt;     /**< s, of the step that was made */
+} repose_progress;
+/** Called after each step; what is not 0 ends the call that advances, with the state as it is. */
+typedef int (*repose_progress_fn)(void* user, const repose_progress* progress);
+/** `progress` null: nobody. */
+REPOSE_API repose_status repose_set_progress(repose_engine engine, repose_progress_fn progress, void* user);
+/** `log` null: nobody. Warnings that come while advancing are told before that call returns. */
+REPOSE_API repose_status repose_set_log(repose_engine engine, repose_log_fn log, void* user);
+
+/** All warnings so far: how many, and one of them; copies as repose_error_message does. */
+REPOSE_API repose_status repose_warning_count(repose_engine engine, size_t* count);
+REPOSE_API repose_status repose_warning(repose_engine engine, size_t index, char* buffer, size_t capacity,
+                                        size_t* length);
+
+typedef struct repose_info {
+  uint32_t size, version;
+  int64_t frame, step; /**< completed */
+  double time;         /**< s, of the scene */
+  uint64_t particles, particles_asleep;
+  uint64_t blocks;       /**< of nodes */
+  uint64_t generation;   /**< of views: see repose_channel */
+  double memory;         /**< bytes that it takes and has made room for */
+  double writing_memory; /**< bytes that a copy of the points takes for a while, about */
+  int32_t threads;
+  int32_t target;   /**< a REPOSE_TARGET, never BEST */
+  int32_t implicit; /**< 1: steps are implicit */
+  int32_t sound;    /**< 0: memory ran out in the midst of a change, and the state must not be saved */
+} repose_info;
+REPOSE_API repose_status repose_engine_info(repose_engine engine, repose_info* info);
+
+/** Of all numbers of all particles, and of the step: the one that `repose run` writes into run.json. */
+REPOSE_API repose_status repose_hash(repose_engine engine, uint64_t* hash);
+
+/**
+ * Goes on with a key at another value: gravity, winds, friction, materials' strength, time.max_step. It is as
+ * if the state had been saved and loaded into an engine made of that scene, and takes about as long as making
+ * one without particles; sand that sleeps is woken. Errors: those of repose_engine_create; SCENE where a state
+ * cannot go on so (bodies, grid, emitters, density, what particles keep); nothing has then changed.
+ */
+REPOSE_API repose_status repose_change(repose_engine engine, const char* key, const char* value);
+
+/* State -------------------------------------------------------------------------------------------------------
+ */
+
+/** Takes `bytes` bytes; what is not 0 says that they could not be taken (IO). */
+typedef int (*repose_write_fn)(void* user, const void* data, size_t bytes);
+/**
+ * @name The state, bit for bit
+ * To a file, which appears whole or not at all, or through `write`; from a file or from memory. It goes into an
+ * engine of the same scene, of any number of threads. What is damaged is refused (IO) and changes nothing.
+ * Where colliders that the host leads stand is no part of it: say it after loading, with 0 s or at once.
+ * Errors: CANNOT_WRITE, IO; NO_INPUT, SCENE (of another scene), IO, MEMORY.
+ * @{
+ */
+REPOSE_API repose_status repose_state_save(repose_engine engine, const char* path);
+REPOSE_API repose_status repose_state_load(repose_engine engine, const char* path);
+REPOSE_API repose_status repose_state_write(repose_engine engine, repose_write_fn write, void* user);
+REPOSE_API repose_status repose_state_read(repose_engine engine, const void* data, size_t bytes);
+/** @} */
+
+/* Reading particles -------------------------------------------------------------------------------------------
+ */
+
+enum { REPOSE_UP_OF_SCENE = 0, REPOSE_UP_Y = 1, REPOSE_UP_Z = 2 };
+
+typedef struct repose_points_options {
+  uint32_t size, version;
+  const char*
+      attributes; /**< beside P, v, id, pscale: "stress,pressure,elastic_strain,density,speed,age,channels"
+                       or some of them; null: none */
+  int32_t mass;   /**< not 0: also "mass" */
+  int32_t up;     /**< in which frame P and v are; tensors are in the scene's alone */
+} repose_points_options;
+
+/**
+ * A copy of all particles in the order of their ids, which lasts until it is destroyed, whatever the engine
+ * does. `options` may be null. Errors: USAGE for an attribute that is unknown, MEMORY.
+ */
+REPOSE_API repose_status repose_points_create(repose_engine engine, const repose_points_options* options,
+                                              repose_points* points);
+REPOSE_API repose_status repose_points_destroy(repose_points points);
+REPOSE_API repose_status repose_points_count(repose_points points, size_t* count);
+/**
+ * Numbers per particle of an attribute: 3 of "P" (m) and "v" (m/s), 1 of "pscale" (m), 6 of tensors (xx yy zz
+ * xy yz xz, Pa), 1 of the others. Error: USAGE.
+ */
+REPOSE_API repose_status repose_points_components(repose_points points, const char* attribute,
+                                                  int32_t* components);
+/**
+ * Copies count x components floats, particle by particle, into memory of the host that has room for `capacity`.
+ * Errors: USAGE; ARGUMENT where there is too little room.
+ */
+REPOSE_API repose_status repose_points_read(repose_points points, const char* attribute, float* values,
+                                            size_t capacity);
+/** The same of positions in double precision, and of ids. */
+REPOSE_API repose_status repose_points_positions(repose_points points, double* values, size_t capacity);
+REPOSE_API repose_status repose_points_ids(repose_points points, uint32_t* ids, size_t capacity);
+
+typedef struct repose_set {
+  uint32_t size, version;
+  const char* name;       /**< of the body or emitter */
+  const char* material;   /**< its name in the scene */
+  double particle_mass;   /**< kg */
+  double particle_volume; /**< m^3, at rest */
+  uint64_t count;         /**< particles */
+  uint64_t channels;      /**< how many */
+  const uint32_t* begin;  /**< particles of block b are [begin[b], begin[b + 1]) */
+  uint64_t blocks;
+  uint64_t generation;
+} repose_set;
+
+enum { REPOSE_FLOAT = 1, REPOSE_DOUBLE = 2, REPOSE_UINT32 = 3 };
+typedef struct repose_view {
+  uint32_t size, version;
+  const char*
+      name; /**< "id", "position.x" (cells from the corner of the particle's block), "velocity.x" (m/s),
+                 "affine.xy" (1/s), "strain.xx" (elastic Hencky strain), and numbers that effects keep */
+  const void* data;
+  uint64_t count;      /**< numbers, contiguous */
+  uint64_t generation; /**< with which the view was made */
+  int32_t type;        /**< REPOSE_FLOAT, REPOSE_DOUBLE or REPOSE_UINT32 */
+  int32_t reserved;
+} repose_view;
+
+/**
+ * @name Numbers where they lie
+ * Particles come in sets, one for each body and emitter, and in a set block by block. Views copy nothing:
+ * `data`, `begin` and the names are the engine's own memory, to be read alone, and valid until the next call
+ * that advances, loads, changes, adds or removes. Each such call makes another generation; repose_view_check
+ * says whether a view is still good. Errors: ARGUMENT for an index that is too large; USAGE for an unknown
+ * name; STALE.
+ * @{
+ */
+REPOSE_API repose_status repose_set_count(repose_engine engine, size_t* count);
+REPOSE_API repose_status repose_set_info(repose_engine engine, size_t index, repose_set* set);
+REPOSE_API repose_status repose_channel(repose_engine engine, size_t set, size_t index, repose_view* view);
+REPOSE_API repose_status repose_channel_named(repose_engine engine, size_t set, const char* name,
+                                              repose_view* view);
+/** From any thread, at any time. */
+REPOSE_API repose_status repose_view_check(repose_engine engine, uint64_t generation);
+/**
+ * Where the corners of the blocks lie, x y z of each, m: a particle is at corner + grid.spacing x position.
+ * Copies 3 x `count` doubles into room for `capacity`; `corners` null asks for the count.
+ */
+REPOSE_API repose_status repose_block_corners(repose_engine engine, double* corners, size_t capacity,
+                                              size_t* count);
+/** @} */
+
+typedef struct repose_measurement_info {
+  uint32_t size, version;
+  const char* probe;    /**< its name in the scene */
+  const char* quantity; /**< such as "force.x" */
+  const char* unit;     /**< empty for a number of things */
+  double value;         /**< not a number where there is none */
+} repose_measurement_info;
+/**
+ * What the scene's probes have measured over the frame that was completed last. Texts are valid until the next
+ * call on the engine that reads measurements or advances.
+ */
+REPOSE_API repose_status repose_measurement_count(repose_engine engine, size_t* count);
+REPOSE_API repose_status repose_measurement(repose_engine engine, size_t index,
+                                            repose_measurement_info* measurement);
+
+/* What the host does between calls that advance ---------------------------------------------------------------
+ */
+
+/**
+ * A collider that the host leads (repose_scene_lead_pose) goes from where it stands to a pose within `seconds`
+ * of the scene's time, straight and evenly, and rests there; with 0 it stands there at once, without a
+ * velocity. `matrix` takes points from where the scene placed the shape to where they are; its columns follow
+ * one another, so the translation is in entries 12, 13 and 14, as in OpenGL, USD and Houdini. It must be a
+ * rotation and a translation. Error: USAGE.
+ */
+REPOSE_API repose_status repose_move_collider(repose_engine engine, const char* collider,
+                                              const double matrix[16], double seconds);
+
+/**
+ * A mesh that the host leads (repose_scene_lead_mesh) goes to new places of its vertices by the end of the
+ * stretch of 1/rate s that begins now; between stretches it cannot be said. `vertices`: x y z of each, m, in
+ * coordinates as of the scene's mesh file. `triangles`: three corners of each, from 0, counter-clockwise from
+ * outside; null: those of the last mesh. With the same triangles points move along straight lines, with others
+ * the surface alone is known. `at_once` not 0: it stands there now. Errors: USAGE; SCENE where it is no closed
+ * solid; MEMORY.
+ */
+REPOSE_API repose_status repose_deform_collider(repose_engine engine, const char* collider,
+                                                const double* vertices, size_t vertex_count,
+                                                const int32_t* triangles, size_t triangle_count,
+                                                int32_t at_once);
+
+typedef struct repose_contact_info {
+  uint32_t size, version;
+  double seconds;   /**< of the scene, that it is the mean over: of the last call that advanced */
+  double force[3];  /**< of the material on the collider, N */
+  double moment[3]; /**< about the scene's origin, N m */
+  double power;     /**< that the collider gives to the material, W */
+} repose_contact_info;
+/** Error: USAGE where log_contacts was not asked for. */
+REPOSE_API repose_status repose_contact(repose_engine engine, const char* collider,
+                                        repose_contact_info* contact);
+
+/**
+ * Particles begin at an emitter of type "host", whose material and particles_per_cell they have: `count` of
+ * them, at positions (x y z of each, m) with velocities (likewise, m/s; null: at rest). Ids follow one another
+ * from `first_id` (may be null). Errors: USAGE, MEMORY.
+ */
+REPOSE_API repose_status repose_add_particles(repose_engine engine, const char* emitter,
+                                              const double* positions, const float* velocities, size_t count,
+                                              uint32_t* first_id);
+/**
+ * Particles end. Ids that are not there are passed over; `removed` (may be null) says how many there were.
+ * Error: USAGE where the scene has no emitter of type "host".
+ */
+REPOSE_API repose_status repose_remove_particles(repose_engine engine, const uint32_t* ids, size_t count,
+                                                 size_t* removed);
+
+/* Structs as they begin ---------------------------------------------------------------------------------------
+ */
+
+#define REPOSE_DEFINE_INIT(type)          \
+  static inline type type##_init(void) {  \
+    type made;                            \
+    memset(&made, 0, sizeof made);        \
+    made.size = (uint32_t)sizeof made;    \
+    made.version = REPOSE_STRUCT_VERSION; \
+    return made;                          \
+  }
+REPOSE_DEFINE_INIT(repose_scene_options)
+REPOSE_DEFINE_INIT(repose_engine_options)
+REPOSE_DEFINE_INIT(repose_report)
+REPOSE_DEFINE_INIT(repose_info)
+REPOSE_DEFINE_INIT(repose_points_options)
+REPOSE_DEFINE_INIT(repose_set)
+REPOSE_DEFINE_INIT(repose_view)
+REPOSE_DEFINE_INIT(repose_measurement_info)
+REPOSE_DEFINE_INIT(repose_contact_info)
+#undef REPOSE_DEFINE_INIT
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
