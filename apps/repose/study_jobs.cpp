@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "apps/repose/study/plot.h"
@@ -248,8 +247,11 @@ std::vector<Figure> figures_of(const StudyDescription& study, const Scene& scene
 
 const std::string& program_build() {
   static const std::string build = [] {
-    std::ifstream program("/proc/self/exe", std::ios::binary);
-    return fingerprint({std::istreambuf_iterator<char>(program), {}});
+    std::ifstream program("/proc/self/exe", std::ios::binary | std::ios::ate);
+    std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(0, program.tellg())), '\0');
+    program.seekg(0);
+    program.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return fingerprint(bytes);
   }();
   return build;
 }

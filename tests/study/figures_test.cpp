@@ -149,6 +149,13 @@ TEST(Period, OfADampedSwing_IsItsOwn) {
   EXPECT_THAT(figure.measure(series(swing, 0.02, 800)).why, HasSubstr("level"));
 }
 
+TEST(Swings, Heights_LieBetweenSamples) {
+  const auto swing = [](double t) { return 3.0 + 0.5 * std::sin(2.0 * pi * t / 1.7 + 0.3); };
+  const auto all = swings(series_of(series(swing, 0.17, 100), "probe.value"), 3.0);  // ten to a period
+  ASSERT_GT(all.size(), 10u);
+  for (const Swing& each : all) EXPECT_NEAR(each.height, 0.5, 0.002) << "the samples alone reach 0.476";
+}
+
 TEST(Damping, IsTheShareLostInAPeriod) {
   const double rate = 0.05, period = 1.7;
   const auto swing = [&](double t) {
@@ -233,6 +240,8 @@ TEST(DensityError, IsTheMeanDistanceFromSeededDensity) {
   EXPECT_NEAR(figure.measure(block(half)).value, 0.2 * std::sqrt(0.5), 1e-5);
   const auto surface = [](int i, int j, int k) { return i % 3 == 0 || j % 3 == 0 || k % 3 == 0 ? 0.7 : 1.0; };
   EXPECT_NEAR(figure.measure(block(surface)).value, 0.0, 1e-5) << "surfaces do not count";
+  const auto spray = [](int i, int j, int k) { return i % 3 == 0 || j % 3 == 0 || k % 3 == 0 ? 0.3 : 1.0; };
+  EXPECT_FALSE(figure.measure(block(spray)).there()) << "nor do cells beside what is less than half full";
 }
 
 TEST(Marginal, OfAShiftedHeap_IsTheShift) {

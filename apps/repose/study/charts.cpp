@@ -260,7 +260,7 @@ class Charts {
   Plot curves() const {
     Plot plot;
     plot.name = "curve-" + figure_.name;
-    plot.title = figure_.axes().y + " over " + figure_.axes().x;
+    plot.title = figure_.name;
     plot.x = {figure_.axes().x, false};
     plot.y = {figure_.axes().y, false};
     plot.legend = looks_.legend;
@@ -288,7 +288,7 @@ class Charts {
     const Reference& against = summary_.references[index_];
     const bool known = against.there && !against.value.curve.empty();
     if (known) add(against.value.curve, reference);
-    if (known) plot.title += "; the reference is dashed";
+    if (known) plot.title += ", the reference dashed";
     return plot;
   }
 

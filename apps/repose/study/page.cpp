@@ -209,7 +209,7 @@ std::string Page::table() const {
   for (std::size_t f = 0; f < plan_.study.figures.size(); ++f) {
     const Figure& figure = plan_.study.figures[f];
     column(figure.name + (figure.unit().empty() ? "" : " [" + figure.unit() + "]"));
-    if (summary_.references[f].there && is_share(figure.compares())) column("error [%]");
+    if (summary_.references[f].there && is_share(figure.compares())) column(figure.name + " error [%]");
   }
   std::string rows;
   for (std::size_t k = 0; k < summary_.points.size(); ++k) rows += row(k);
