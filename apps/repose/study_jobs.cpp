@@ -218,12 +218,13 @@ void SetUp::list_jobs() {
       const bool finest = k == plan.finest;
       const int most = finest && r == 0 ? std::max(seeds, static_cast<int>(plan.study.finest.seeds)) : seeds;
       for (int s = 0; s < most; ++s) {
-        Job job{k, s, r, "", plan.points[k].overrides(), cost_of(*scenes_[k]), plan.points[k].text()};
+        Job job{k, s, r, "", "", plan.points[k].overrides(), cost_of(*scenes_[k]), plan.points[k].text()};
         const std::vector<std::string> seeded = seed_overrides(*scenes_[k], s);
         job.overrides.insert(job.overrides.end(), seeded.begin(), seeded.end());
-        std::string what = run_text(*scenes_[k]);
-        for (const std::string& word : seeded) what += "|" + word;
-        job.key = fingerprint(what + common) + "." + std::to_string(r);
+        const auto scene = read(plan.points[k], seeded);
+        if (!scene) continue;  // as it was a moment ago it could be read
+        job.scene = scene_hash(*scene);
+        job.key = fingerprint(run_text(*scene) + common) + "." + std::to_string(r);
         if (most > 1) job.text += ", seed " + std::to_string(s + 1);
         if (repeat > 1) job.text += ", time " + std::to_string(r + 1);
         setup_.jobs.push_back(std::move(job));
