@@ -236,8 +236,10 @@ class Charts {
 
   Plot error() const {
     Plot plot = against_time("error");
-    plot.title = "Error of " + figure_.name + " against time";
-    plot.y = {with_unit("error of " + figure_.name, factor() == 100.0 ? "%" : figure_.unit()), true};
+    const bool itself = figure_.compares() == Compares::kItself;
+    plot.title = (itself ? "" : "Error of ") + figure_.name + " against time";
+    plot.y = {with_unit((itself ? "" : "error of ") + figure_.name, factor() == 100.0 ? "%" : figure_.unit()),
+              true};
     const double floor = summary_.references[index_].floor;
     if (std::isfinite(floor)) plot.floor = factor() * floor;
     Line front;
