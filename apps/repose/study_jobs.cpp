@@ -89,6 +89,9 @@ Result<void> SetUp::take_vary() {
       if (other.key == vary->key)
         return Error{ErrorKind::kUsage, vary->key + " is varied twice; give all its values at once", "--vary"};
     }
+    // --set would make it, and every point would be the same.
+    if (vary->key.starts_with("parameters.") && value_at(scene_, vary->key).empty())
+      return Error{ErrorKind::kBadScene, "the scene has no " + vary->key + " to vary", "--vary"};
     setup_.vary.push_back(std::move(*vary));
     return {};
   };

@@ -283,6 +283,7 @@ TEST_F(StudyCommand, WrongArguments_SayWhatIsRight) {
   EXPECT_THAT(refused(64, {"--seeds", "0"}), HasSubstr("--seeds"));
   EXPECT_THAT(refused(64, {"--threads", "x"}), HasSubstr("--threads"));
   EXPECT_THAT(refused(65, {"--vary", "grid.spcing=0.1,0.2"}), HasSubstr("did you mean \"spacing\""));
+  EXPECT_THAT(refused(65, {"--vary", "parameters.cells=4,8"}), HasSubstr("no parameters.cells to vary"));
   EXPECT_THAT(refused(65, {"--reference", "finest:grid.spacing=-1"}), HasSubstr("the reference is refused"));
   EXPECT_THAT(refusal(66, {"study", path("none.json"), "--out", out}), HasSubstr("no such file"));
   EXPECT_FALSE(std::filesystem::exists(out)) << "nothing is left of what was refused";
