@@ -132,7 +132,7 @@ TEST(EnergyResidual, CountsGainsOrAllChange) {
   figure.counts = EnergyResidual::Counts::kChange;
   EXPECT_NEAR(figure.measure(record).value, 4.0 / 13.0, 1e-12);
   // What solids did is taken off.
-  for (Moment& moment : record.moments) moment.measured = {{"all", "work_of_solids", "J", -1.0}};
+  for (RunMoment& moment : record.moments) moment.measured = {{"all", "work_of_solids", "J", -1.0}};
   figure.probe = "all";
   EXPECT_NEAR(figure.measure(record).value, 2.0 / 13.0, 1e-12) << "10, 10, 8, 10";
 }
@@ -175,7 +175,7 @@ RunRecord three_frames(const std::vector<std::string>& quantities,
   RunRecord record;
   const double times[] = {0.0, 1.0, 2.0, 4.0};
   for (std::size_t k = 0; k < 4; ++k) {
-    Moment moment;
+    RunMoment moment;
     moment.time = times[k];
     for (std::size_t q = 0; q < quantities.size(); ++q)
       moment.measured.push_back({"gate", quantities[q], "", values[q][k]});
