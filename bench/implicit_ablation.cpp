@@ -37,7 +37,7 @@ std::vector<std::string> variants() {
 }
 
 /// What explicit steps allow at rest, s.
-Result<double> longest_step(const StudyArguments& arguments, const std::string& modulus) {
+Result<double> longest_step(const ImplicitStudyArguments& arguments, const std::string& modulus) {
   RunRequest request = column(arguments, kCells, {modulus});
   request.until = 0.0;
   const auto run = run_scene(request);
@@ -45,7 +45,7 @@ Result<double> longest_step(const StudyArguments& arguments, const std::string& 
   return run->simulation->longest_step();
 }
 
-Result<void> add(Table& table, const StudyArguments& arguments, double modulus, double times,
+Result<void> add(Table& table, const ImplicitStudyArguments& arguments, double modulus, double times,
                  const std::string& mode, const std::string& variant) {
   const std::string modulus_is = assign("materials.sand.youngs_modulus", modulus);
   const auto longest = longest_step(arguments, modulus_is);
@@ -72,7 +72,7 @@ Result<void> add(Table& table, const StudyArguments& arguments, double modulus, 
 
 }  // namespace
 
-Result<Table> study_ablation(const StudyArguments& arguments) {
+Result<Table> study_ablation(const ImplicitStudyArguments& arguments) {
   Table table{{"E, Pa", "Explicit steps long", "Mode", "Key", "Newton per step", "Linear per step", "Redone",
                "As long", "Seconds"},
               {}};

@@ -8,7 +8,7 @@
 namespace repose {
 namespace {
 
-void describe_options(CLI::App& app, StudyArguments& arguments, std::string& page) {
+void describe_options(CLI::App& app, ImplicitStudyArguments& arguments, std::string& page) {
   app.add_option("--page", page, "put the tables into this page, docs/implicit.md");
   app.add_option("--modes", arguments.modes, "implicit.mode (default: as the study has it)")->delimiter(',');
   app.add_option("--steps", arguments.steps, "lengths of implicit steps, s (default: as the study has it)")
@@ -24,7 +24,8 @@ void describe_options(CLI::App& app, StudyArguments& arguments, std::string& pag
 }
 
 /// Puts the study's table into the page, or prints it.
-Result<void> tell(const Study& study, const StudyArguments& arguments, const std::string& page) {
+Result<void> tell(const ImplicitStudy& study, const ImplicitStudyArguments& arguments,
+                  const std::string& page) {
   std::fprintf(stderr, "%s\n", study.name);
   const auto table = study.run(arguments);
   if (!table) return table.error();
@@ -38,7 +39,7 @@ Result<void> tell(const Study& study, const StudyArguments& arguments, const std
 }
 
 int main(int count, char** words) {
-  StudyArguments arguments;
+  ImplicitStudyArguments arguments;
   std::string page;
   CLI::App app{"The studies of implicit steps behind docs/implicit.md: one thread, seconds of the processor",
                "implicit_bench"};
@@ -46,14 +47,14 @@ int main(int count, char** words) {
   app.require_subcommand(1);
   describe_options(app, arguments, page);
   const CLI::App* all = app.add_subcommand("all", "every study");
-  for (const Study& study : studies()) app.add_subcommand(study.name, study.meaning);
+  for (const ImplicitStudy& study : studies()) app.add_subcommand(study.name, study.meaning);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
     const int status = app.exit(error);
     return status == 0 ? 0 : static_cast<int>(ErrorKind::kUsage);
   }
-  for (const Study& study : studies()) {
+  for (const ImplicitStudy& study : studies()) {
     if (!all->parsed() && !app.got_subcommand(study.name)) continue;
     if (auto told = tell(study, arguments, page); !told) return fail(told.error());
   }

@@ -19,7 +19,7 @@ constexpr const char* kColumn = R"json({"repose": 1, "name": "column",
 
 }  // namespace
 
-RunRequest column(const StudyArguments& arguments, std::int64_t cells, std::vector<std::string> set) {
+RunRequest column(const ImplicitStudyArguments& arguments, std::int64_t cells, std::vector<std::string> set) {
   RunRequest request;
   request.scene = kColumn;
   request.set = {assign("parameters.cells", static_cast<double>(arguments.cells_or(cells)))};

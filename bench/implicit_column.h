@@ -12,7 +12,7 @@ constexpr double kColumnModulus = 3.537e5;  ///< Pa
 constexpr double kColumnTime = 0.5;         ///< s; the front rests from about 0.4 s on
 
 /// The column with so many cells across.
-RunRequest column(const StudyArguments& arguments, std::int64_t cells, std::vector<std::string> set);
+RunRequest column(const ImplicitStudyArguments& arguments, std::int64_t cells, std::vector<std::string> set);
 
 /// Where the front is over the width that the column had, less 1. The front is where 98 of 100 particles lie
 /// behind: beyond it sand is thinner than a cell, and a few particles would decide.

@@ -23,7 +23,7 @@ constexpr const char* kBin = R"json({"repose": 1, "name": "bin",
 
 constexpr double kTime = 0.02;  // s
 
-RunRequest bin(const StudyArguments& arguments, std::vector<std::string> set) {
+RunRequest bin(const ImplicitStudyArguments& arguments, std::vector<std::string> set) {
   RunRequest request;
   request.scene = kBin;
   request.set = {assign("parameters.cells", static_cast<double>(arguments.cells_or(24)))};
@@ -58,7 +58,7 @@ struct Turn {
   }
 };
 
-Result<Turn> median_turn(const StudyArguments& arguments, const std::vector<std::string>& set) {
+Result<Turn> median_turn(const ImplicitStudyArguments& arguments, const std::vector<std::string>& set) {
   constexpr std::size_t kTurns = 3;
   std::vector<Turn> turns;
   while (turns.size() < kTurns) {
@@ -76,7 +76,7 @@ Result<Turn> median_turn(const StudyArguments& arguments, const std::vector<std:
 
 }  // namespace
 
-Result<Table> study_iteration(const StudyArguments& arguments) {
+Result<Table> study_iteration(const ImplicitStudyArguments& arguments) {
   Table table{{"Mode", "Longest, s", "Particles", "ns per explicit step", "ns per step",
                "ns per linear iteration", "in explicit steps",
                "ns of the rest of a solve, per Newton iteration", "Newton per step", "Linear per step", "Note"},

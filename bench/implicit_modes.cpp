@@ -6,7 +6,7 @@ namespace repose {
 namespace {
 
 struct Columns {
-  const StudyArguments& arguments;
+  const ImplicitStudyArguments& arguments;
   Table table;
 
   Result<void> add(const std::string& how, const std::string& step, const std::vector<std::string>& set) {
@@ -29,7 +29,7 @@ struct Columns {
 };
 
 /// What explicit steps allow at rest, s.
-Result<double> longest_explicit_step(const StudyArguments& arguments) {
+Result<double> longest_explicit_step(const ImplicitStudyArguments& arguments) {
   RunRequest request = column(arguments, 20, {});
   request.until = 0.0;
   const auto run = run_scene(request);
@@ -57,7 +57,7 @@ Result<void> add_explicit_rows(Columns& columns) {
 
 }  // namespace
 
-Result<Table> study_modes(const StudyArguments& arguments) {
+Result<Table> study_modes(const ImplicitStudyArguments& arguments) {
   Columns columns{arguments,
                   {{"Steps", "Longest, s", "Run-out", "of the mean", "Steps made", "of them as long",
                     "Newton per step", "Linear per step", "Seconds"},

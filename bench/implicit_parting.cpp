@@ -32,7 +32,7 @@ double share_taken(const Simulation& simulation) {
   return sum / static_cast<double>(half) / kSpeed;
 }
 
-Result<Run> part(const StudyArguments& arguments, std::vector<std::string> set) {
+Result<Run> part(const ImplicitStudyArguments& arguments, std::vector<std::string> set) {
   RunRequest request;
   request.scene = kBlocks;
   request.set = {assign("parameters.cells", static_cast<double>(arguments.cells_or(10)))};
@@ -58,7 +58,7 @@ double add(Table& table, const std::string& how, const std::string& step, const 
 
 }  // namespace
 
-Result<Table> study_parting(const StudyArguments& arguments) {
+Result<Table> study_parting(const ImplicitStudyArguments& arguments) {
   Table table{
       {"Steps", "Longest, s", "Impulse, N s/m^2", "of the momentum", "over `lagged`", "As long", "Seconds"},
       {}};

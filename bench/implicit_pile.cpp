@@ -34,7 +34,7 @@ struct Pressing {
   std::vector<double> force;  ///< N, upwards on the plate, of each frame
 };
 
-Result<Pressing> press(const StudyArguments& arguments, const std::vector<std::string>& how,
+Result<Pressing> press(const ImplicitStudyArguments& arguments, const std::vector<std::string>& how,
                        double most_seconds) {
   Pressing pressing;
   RunRequest request;
@@ -88,7 +88,7 @@ void add(Table& table, const std::string& plate, const std::string& name, const 
 }
 
 /// Rows of one kind of plate: explicit steps, then implicit ones of several lengths.
-Result<void> add_plate(Table& table, const StudyArguments& arguments, const std::string& plate,
+Result<void> add_plate(Table& table, const ImplicitStudyArguments& arguments, const std::string& plate,
                        const std::vector<std::string>& contact, const std::vector<double>& steps) {
   const auto right = press(arguments, contact, 10.0 * arguments.most_seconds);
   if (!right) return right.error();
@@ -107,7 +107,7 @@ Result<void> add_plate(Table& table, const StudyArguments& arguments, const std:
 
 }  // namespace
 
-Result<Table> study_pile(const StudyArguments& arguments) {
+Result<Table> study_pile(const ImplicitStudyArguments& arguments) {
   Table table{{"Plate", "Steps", "Longest, s", "Force at the end, N", "off by, all along", "Steps made",
                "of them as long", "Newton per step", "Linear per step", "Seconds", "Times sooner"},
               {}};

@@ -59,7 +59,7 @@ struct Way {
 
 /// One run: kDone where the layer stays, kEnough where it goes. What it gives way by while its weight comes is
 /// no matter.
-Result<Run> tilt(const StudyArguments& arguments, double angle, const std::vector<std::string>& how) {
+Result<Run> tilt(const ImplicitStudyArguments& arguments, double angle, const std::vector<std::string>& how) {
   RunRequest request;
   request.scene = kLayer;
   request.set = arguments.set;
@@ -75,7 +75,7 @@ Result<Run> tilt(const StudyArguments& arguments, double angle, const std::vecto
   return run_scene(request);
 }
 
-Result<Slope> steepest(const StudyArguments& arguments, const std::vector<std::string>& how) {
+Result<Slope> steepest(const ImplicitStudyArguments& arguments, const std::vector<std::string>& how) {
   Slope slope;
   for (int halving = 0; halving < kHalvings && slope.stopped.empty(); ++halving) {
     const double angle = 0.5 * (slope.gentle + slope.steep);
@@ -90,7 +90,7 @@ Result<Slope> steepest(const StudyArguments& arguments, const std::vector<std::s
   return slope;
 }
 
-Result<void> add(Table& table, const StudyArguments& arguments, const std::string& name,
+Result<void> add(Table& table, const ImplicitStudyArguments& arguments, const std::string& name,
                  const std::string& step, const std::vector<std::string>& how) {
   const auto slope = steepest(arguments, how);
   if (!slope) return slope.error();
@@ -105,7 +105,7 @@ Result<void> add(Table& table, const StudyArguments& arguments, const std::strin
 
 }  // namespace
 
-Result<Table> study_slope(const StudyArguments& arguments) {
+Result<Table> study_slope(const ImplicitStudyArguments& arguments) {
   Table table{{"Steps", "Longest, s", "Steepest slope, degrees", "beyond atan(sin 30°)", "As long",
                "Seconds of all runs"},
               {}};

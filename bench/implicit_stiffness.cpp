@@ -12,7 +12,8 @@ constexpr std::int64_t kCells = 10;
 constexpr double kAllowed = 0.05;
 
 /// `step`: about how long steps will be, s.
-RunRequest stiff(const StudyArguments& arguments, double modulus, double step, std::vector<std::string> set) {
+RunRequest stiff(const ImplicitStudyArguments& arguments, double modulus, double step,
+                 std::vector<std::string> set) {
   constexpr double kKept = 0.99, kPer = 3.4e-4;  // s: the explicit step of the softest column
   set.push_back(assign("grid.kept_velocity", std::pow(kKept, step / kPer)));
   set.push_back(assign("materials.sand.youngs_modulus", modulus));
@@ -29,7 +30,7 @@ struct Reference {
 };
 
 /// Explicit runs that may not be finished take what a softer column was compared with.
-Result<Reference> reference(const StudyArguments& arguments, double modulus, const Reference& softer) {
+Result<Reference> reference(const ImplicitStudyArguments& arguments, double modulus, const Reference& softer) {
   RunRequest request =
       stiff(arguments, modulus, 0.5 * explicit_step(modulus), {"time.sound=0.25", "time.isolated=0.45"});
   request.most_seconds *= 3.0;
@@ -53,7 +54,8 @@ struct Cheapest {
 };
 
 /// The cheapest of all modes and steps that is right. None is given longer than the cheapest so far took.
-Result<Cheapest> cheapest_implicit(const StudyArguments& arguments, double modulus, const Reference& right) {
+Result<Cheapest> cheapest_implicit(const ImplicitStudyArguments& arguments, double modulus,
+                                   const Reference& right) {
   Cheapest best;
   for (const std::string& mode : arguments.modes_or(kYieldingModes)) {
     for (const double step : arguments.steps_or({3e-3, 1e-3, 3e-4})) {
@@ -74,7 +76,7 @@ Result<Cheapest> cheapest_implicit(const StudyArguments& arguments, double modul
   return best;
 }
 
-Result<void> add(Table& table, const StudyArguments& arguments, double modulus, Reference& right) {
+Result<void> add(Table& table, const ImplicitStudyArguments& arguments, double modulus, Reference& right) {
   const auto found = reference(arguments, modulus, right);
   if (!found) return found.error();
   right = *found;
@@ -97,7 +99,7 @@ Result<void> add(Table& table, const StudyArguments& arguments, double modulus, 
 
 }  // namespace
 
-Result<Table> study_stiffness(const StudyArguments& arguments) {
+Result<Table> study_stiffness(const ImplicitStudyArguments& arguments) {
   Table table{{"E, Pa", "Run-out", "Explicit, seconds", "off by", "Implicit: mode and step", "seconds",
                "off by", "Newton per step", "Linear per step", "Times sooner"},
               {}};

@@ -4,8 +4,8 @@
 
 namespace repose {
 
-const std::vector<Study>& studies() {
-  static const std::vector<Study> list{
+const std::vector<ImplicitStudy>& studies() {
+  static const std::vector<ImplicitStudy> list{
       {"modes", "run-out of a column, by mode and step", study_modes},
       {"parting", "cohesion that is not there: two blocks that part", study_parting},
       {"slope", "cohesion that is not there: the steepest slope that stays", study_slope},

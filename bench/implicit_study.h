@@ -12,7 +12,7 @@
 namespace repose {
 
 /// What a study may be told; it has its own where there is nothing, or 0.
-struct StudyArguments {
+struct ImplicitStudyArguments {
   std::vector<std::string> modes;  ///< implicit.mode
   std::vector<double> steps;       ///< time.max_step of implicit runs, s
   std::int64_t cells = 0;          ///< across what is studied
@@ -26,14 +26,14 @@ struct StudyArguments {
   std::vector<std::string> modes_or(std::vector<std::string> own) const { return modes.empty() ? own : modes; }
 };
 
-struct Study {
+struct ImplicitStudy {
   const char* name;
   const char* meaning;
-  Result<Table> (*run)(const StudyArguments&);
+  Result<Table> (*run)(const ImplicitStudyArguments&);
 };
 
 /// All of them, in the order of the page.
-const std::vector<Study>& studies();
+const std::vector<ImplicitStudy>& studies();
 
 /// All ways in which sand can answer within a solve.
 inline const std::vector<std::string> kAllModes{"exact", "projected", "lagged", "unilateral"};
@@ -51,20 +51,20 @@ void add_row(Table& table, std::vector<std::string> row);
 // The studies.
 
 /// Run-out of a column in all modes and steps, beside that of explicit steps of several lengths and seeds.
-Result<Table> study_modes(const StudyArguments& arguments);
+Result<Table> study_modes(const ImplicitStudyArguments& arguments);
 /// What sand without cohesion takes from sand that moves away from it.
-Result<Table> study_parting(const StudyArguments& arguments);
+Result<Table> study_parting(const ImplicitStudyArguments& arguments);
 /// The steepest slope on which a layer of sand stays.
-Result<Table> study_slope(const StudyArguments& arguments);
+Result<Table> study_slope(const ImplicitStudyArguments& arguments);
 /// Seconds to a run-out that is right to 5 %, against Young's modulus.
-Result<Table> study_stiffness(const StudyArguments& arguments);
+Result<Table> study_stiffness(const ImplicitStudyArguments& arguments);
 /// A plate that sinks slowly into a bed: force and seconds.
-Result<Table> study_pile(const StudyArguments& arguments);
+Result<Table> study_pile(const ImplicitStudyArguments& arguments);
 /// What each key of the solver is worth.
-Result<Table> study_ablation(const StudyArguments& arguments);
+Result<Table> study_ablation(const ImplicitStudyArguments& arguments);
 /// What an iteration of each linear method takes, beside an explicit step.
-Result<Table> study_iteration(const StudyArguments& arguments);
+Result<Table> study_iteration(const ImplicitStudyArguments& arguments);
 /// Run-out and seconds against implicit.tolerance.
-Result<Table> study_tolerance(const StudyArguments& arguments);
+Result<Table> study_tolerance(const ImplicitStudyArguments& arguments);
 
 }  // namespace repose

@@ -20,7 +20,7 @@ struct Mean {
   std::string stopped;
 };
 
-Result<Mean> over_seeds(const StudyArguments& arguments, const std::vector<std::string>& how) {
+Result<Mean> over_seeds(const ImplicitStudyArguments& arguments, const std::vector<std::string>& how) {
   Mean mean;
   for (int seed = 1; seed <= kSeeds && mean.stopped.empty(); ++seed) {
     std::vector<std::string> set = how;
@@ -45,7 +45,7 @@ std::string moved(const Mean& mean, const std::optional<Mean>& tighter) {
   return with_decimals(100.0 * std::abs(tighter->run_out / mean.run_out - 1.0), 1) + " %";
 }
 
-Result<void> add_modulus(Table& table, const StudyArguments& arguments, double modulus, double step,
+Result<void> add_modulus(Table& table, const ImplicitStudyArguments& arguments, double modulus, double step,
                          const std::string& mode) {
   std::vector<std::vector<std::string>> rows;
   std::optional<Mean> tighter;
@@ -69,7 +69,7 @@ Result<void> add_modulus(Table& table, const StudyArguments& arguments, double m
 
 }  // namespace
 
-Result<Table> study_tolerance(const StudyArguments& arguments) {
+Result<Table> study_tolerance(const ImplicitStudyArguments& arguments) {
   Table table{{"E, Pa", "Mode", "Longest, s", "Tolerance", "Run-out", "of the seeds",
                "Ten times tighter moves it", "Newton per step", "Linear per step", "Seconds"},
               {}};

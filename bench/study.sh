@@ -38,10 +38,10 @@ study() {  # NAME, then what a quick one changes
 
 transfers=grid.transfer=mls_apic,aflip,flip
 study bar --vary parameters.cells=16,32,64 --vary "$transfers" --repeat 3
-study vortex --vary parameters.cells=16,24,32 --vary "$transfers" --seeds 2 --repeat 1
-study plane_column --vary parameters.cells=8,16,32 --vary "$transfers" --seeds 3 --repeat 1 \
-  --reference "finest:parameters.cells=64" --reference-seeds 4
-study column --vary parameters.cells=4,6,8,12 --vary grid.transfer=mls_apic,aflip \
+study vortex --vary parameters.cells=12,16,24 --vary "$transfers" --seeds 2 --repeat 1
+study plane_column --vary parameters.cells=8,12,16 --vary "$transfers" --seeds 3 --repeat 1 \
+  --reference "finest:parameters.cells=32" --reference-seeds 4
+study column --vary parameters.cells=4,6,8,10 --vary grid.transfer=mls_apic,aflip \
   --vary bodies.column.particles_per_cell=4,8 --seeds 2 --repeat 1 \
-  --reference "finest:parameters.cells=24" --reference-seeds 4
+  --reference "finest:parameters.cells=20" --reference-seeds 4
 $quick || study box

@@ -27,7 +27,7 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
-Moment moment_of(Simulation& simulation) {
+RunMoment moment_of(Simulation& simulation) {
   const Diagnostics d = simulation.diagnose();
   return {simulation.counters().time, d.mass,          d.center_of_mass, d.momentum,
           d.kinetic_energy,           d.affine_energy, d.elastic_energy, d.potential_energy,
@@ -68,7 +68,7 @@ std::vector<Triple> expected_places(const Scene& scene, const RunRecord& record,
 }
 
 /// A series that no probe tells is found out before the run.
-Result<void> check_series(const std::vector<Figure>& figures, const Moment& moment, const Scene& scene) {
+Result<void> check_series(const std::vector<Figure>& figures, const RunMoment& moment, const Scene& scene) {
   const std::vector<std::string> names = series_names(moment);
   for (const Figure& figure : figures) {
     for (const std::string& wanted : figure.series()) {
@@ -157,6 +157,7 @@ int figures_command(const FiguresArguments& arguments) {
   if (!scene) return fail(scene.error());
   RunResult result;
   result.build = program_build();
+  result.scene = scene_hash(*scene);
   const auto made = make_run(*scene, arguments, result);
   if (!made) {
     result.code = static_cast<int>(made.error().kind);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "apps/repose/study/plot.h"
@@ -90,6 +89,9 @@ Result<void> SetUp::take_vary() {
       if (other.key == vary->key)
         return Error{ErrorKind::kUsage, vary->key + " is varied twice; give all its values at once", "--vary"};
     }
+    // --set would make it, and every point would be the same.
+    if (vary->key.starts_with("parameters.") && value_at(scene_, vary->key).empty())
+      return Error{ErrorKind::kBadScene, "the scene has no " + vary->key + " to vary", "--vary"};
     setup_.vary.push_back(std::move(*vary));
     return {};
   };
@@ -219,12 +221,13 @@ void SetUp::list_jobs() {
       const bool finest = k == plan.finest;
       const int most = finest && r == 0 ? std::max(seeds, static_cast<int>(plan.study.finest.seeds)) : seeds;
       for (int s = 0; s < most; ++s) {
-        Job job{k, s, r, "", plan.points[k].overrides(), cost_of(*scenes_[k]), plan.points[k].text()};
+        Job job{k, s, r, "", "", plan.points[k].overrides(), cost_of(*scenes_[k]), plan.points[k].text()};
         const std::vector<std::string> seeded = seed_overrides(*scenes_[k], s);
         job.overrides.insert(job.overrides.end(), seeded.begin(), seeded.end());
-        std::string what = run_text(*scenes_[k]);
-        for (const std::string& word : seeded) what += "|" + word;
-        job.key = fingerprint(what + common) + "." + std::to_string(r);
+        const auto scene = read(plan.points[k], seeded);
+        if (!scene) continue;  // as it was a moment ago it could be read
+        job.scene = scene_hash(*scene);
+        job.key = fingerprint(run_text(*scene) + common) + "." + std::to_string(r);
         if (most > 1) job.text += ", seed " + std::to_string(s + 1);
         if (repeat > 1) job.text += ", time " + std::to_string(r + 1);
         setup_.jobs.push_back(std::move(job));
@@ -248,8 +251,11 @@ std::vector<Figure> figures_of(const StudyDescription& study, const Scene& scene
 
 const std::string& program_build() {
   static const std::string build = [] {
-    std::ifstream program("/proc/self/exe", std::ios::binary);
-    return fingerprint({std::istreambuf_iterator<char>(program), {}});
+    std::ifstream program("/proc/self/exe", std::ios::binary | std::ios::ate);
+    std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(0, program.tellg())), '\0');
+    program.seekg(0);
+    program.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return fingerprint(bytes);
   }();
   return build;
 }

@@ -25,6 +25,7 @@ struct Job {
   std::size_t point = 0;
   int seed = 0, repeat = 0;
   std::string key;                     ///< by which it is found again
+  std::string scene;                   ///< hash of the scene that it shall run
   std::vector<std::string> overrides;  ///< as --set has them
   double cost = 1.0;                   ///< about, over that of the others
   std::string text;                    ///< point and seed, for people

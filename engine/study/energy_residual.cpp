@@ -28,7 +28,7 @@ FigureValue EnergyResidual::measure(const RunRecord& record) const {
   if (record.moments.size() < 2) return FigureValue::none("the run has no frame");
   Curve left;
   double work = 0.0, kinetic = 0.0, low = INFINITY, high = -INFINITY;
-  for (const Moment& m : record.moments) {
+  for (const RunMoment& m : record.moments) {
     // What a probe tells is of the frame that ends there, and the start ends none.
     if (!probe.empty() && &m != &record.moments.front())
       work += number_of(m, probe + ".work_of_solids").value_or(0.0);

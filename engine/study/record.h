@@ -13,7 +13,7 @@
 namespace repose {
 
 /// The state at one time, in sums.
-struct Moment {
+struct RunMoment {
   double time = 0.0;                                                   ///< s
   double mass = 0.0;                                                   ///< kg
   Triple center_of_mass{}, momentum{};                                 ///< m; kg m/s
@@ -27,8 +27,8 @@ struct RunRecord {
   int flat = -1;         ///< axis of plane strain; -1: none
   Triple period{};       ///< m, after which an axis repeats; 0: never
   PointCloud start, end;
-  std::vector<Triple> expected;  ///< where an exact motion has the particles of the end; empty: none is known
-  std::vector<Moment> moments;   ///< the first is the start
+  std::vector<Triple> expected;    ///< where an exact motion has the particles of the end; empty: none is known
+  std::vector<RunMoment> moments;  ///< the first is the start
 };
 
 /// V0 of a particle, m^3, as its radius tells it: half of the volume is a ball.

@@ -8,7 +8,7 @@ namespace repose {
 namespace {
 
 /// What every run tells.
-std::vector<std::pair<std::string, double>> own_numbers(const Moment& m) {
+std::vector<std::pair<std::string, double>> own_numbers(const RunMoment& m) {
   std::vector<std::pair<std::string, double>> all;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
@@ -40,14 +40,14 @@ Swing top(const Curve& series, std::size_t k, double level) {
 
 }  // namespace
 
-std::vector<std::string> series_names(const Moment& moment) {
+std::vector<std::string> series_names(const RunMoment& moment) {
   std::vector<std::string> names;
   for (const auto& [name, value] : own_numbers(moment)) names.push_back(name);
   for (const Measurement& m : moment.measured) names.push_back(m.probe + "." + m.quantity);
   return names;
 }
 
-std::optional<double> number_of(const Moment& moment, const std::string& name) {
+std::optional<double> number_of(const RunMoment& moment, const std::string& name) {
   for (const Measurement& m : moment.measured) {
     if (m.probe + "." + m.quantity == name)
       return std::isfinite(m.value) ? std::optional(m.value) : std::nullopt;
@@ -60,7 +60,7 @@ std::optional<double> number_of(const Moment& moment, const std::string& name) {
 
 Curve series_of(const RunRecord& record, const std::string& name) {
   Curve series;
-  for (const Moment& moment : record.moments) {
+  for (const RunMoment& moment : record.moments) {
     const auto value = number_of(moment, name);
     if (!value) continue;
     series.x.push_back(moment.time);

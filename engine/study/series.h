@@ -13,9 +13,9 @@
 namespace repose {
 
 /// All names that a moment answers to.
-std::vector<std::string> series_names(const Moment& moment);
+std::vector<std::string> series_names(const RunMoment& moment);
 /// Its number; nothing where it has none of that name, or no number there.
-std::optional<double> number_of(const Moment& moment, const std::string& name);
+std::optional<double> number_of(const RunMoment& moment, const std::string& name);
 /// Over time, of the moments that have the number.
 Curve series_of(const RunRecord& record, const std::string& name);
 

@@ -195,6 +195,23 @@ TEST_F(StudyCommand, KilledOrInterrupted_GoesOnToTheSame) {
     EXPECT_EQ(entry.path().extension(), ".json") << entry.path();
 }
 
+TEST_F(StudyCommand, SceneThatIsEditedMeanwhile_GivesNoRunsOfAnother) {
+  const std::string scene = tiny_scene(kStudy);
+  const Words words{"--vary", "grid.transfer=apic,flip,aflip", "--set", "time.frames=40"};
+  const auto edit = [&, told = false](pid_t, const std::string&) mutable {
+    if (std::exchange(told, true)) return;
+    tiny_scene(std::string(R"(, "gravity": {"acceleration": [0, -1.6, 0]})") + kStudy);
+  };
+  ASSERT_EQ(study(scene, "out", words, edit).code, 0);
+  const Json::Value points = read_json(path("out/study.json"))["points"];
+  EXPECT_EQ(points[0]["state"], "complete");
+  EXPECT_EQ(points[2]["state"], "gave out");
+  EXPECT_THAT(points[2]["words"].asString(), HasSubstr("has changed"));
+  tiny_scene(kStudy);
+  ASSERT_EQ(study(scene, "out", words).code, 0);
+  EXPECT_EQ(read_json(path("out/study.json"))["points"][2]["state"], "complete") << "it is made again";
+}
+
 TEST_F(StudyCommand, RefusedAndFailedPoints_AreKept) {
   // Gravity is no limit of the step, so such a one throws particles over cells even in an eighth of it.
   const Words words{"--vary", "grid.transfer=apic,no_such", "--vary",
@@ -266,6 +283,7 @@ TEST_F(StudyCommand, WrongArguments_SayWhatIsRight) {
   EXPECT_THAT(refused(64, {"--seeds", "0"}), HasSubstr("--seeds"));
   EXPECT_THAT(refused(64, {"--threads", "x"}), HasSubstr("--threads"));
   EXPECT_THAT(refused(65, {"--vary", "grid.spcing=0.1,0.2"}), HasSubstr("did you mean \"spacing\""));
+  EXPECT_THAT(refused(65, {"--vary", "parameters.cells=4,8"}), HasSubstr("no parameters.cells to vary"));
   EXPECT_THAT(refused(65, {"--reference", "finest:grid.spacing=-1"}), HasSubstr("the reference is refused"));
   EXPECT_THAT(refusal(66, {"study", path("none.json"), "--out", out}), HasSubstr("no such file"));
   EXPECT_FALSE(std::filesystem::exists(out)) << "nothing is left of what was refused";

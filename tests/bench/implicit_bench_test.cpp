@@ -17,8 +17,8 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 /// Four cells, one mode, one step, one frame.
-StudyArguments tiny() {
-  StudyArguments arguments;
+ImplicitStudyArguments tiny() {
+  ImplicitStudyArguments arguments;
   arguments.modes = {"exact"};
   arguments.steps = {1e-3};
   arguments.cells = 4;
@@ -27,7 +27,7 @@ StudyArguments tiny() {
   return arguments;
 }
 
-class Studies : public testing::TestWithParam<Study> {};
+class Studies : public testing::TestWithParam<ImplicitStudy> {};
 
 TEST_P(Studies, TinyCase_RowsAsWideAsTheHead) {
   const auto table = GetParam().run(tiny());
@@ -42,7 +42,7 @@ TEST_P(Studies, TinyCase_RowsAsWideAsTheHead) {
 }
 
 TEST_P(Studies, NoTime_RowsSayWhy) {
-  StudyArguments arguments = tiny();
+  ImplicitStudyArguments arguments = tiny();
   arguments.most_seconds = 1e-9;
   const auto table = GetParam().run(arguments);
   ASSERT_TRUE(table) << table.error().text();
@@ -50,7 +50,7 @@ TEST_P(Studies, NoTime_RowsSayWhy) {
 }
 
 TEST_P(Studies, WrongKey_IsAnError) {
-  StudyArguments arguments = tiny();
+  ImplicitStudyArguments arguments = tiny();
   arguments.set = {"implicit.no_such_key=1"};
   EXPECT_FALSE(GetParam().run(arguments));
 }
@@ -82,7 +82,7 @@ TEST(ImplicitRun, TimeToTheEnd_IsOfAllThatWasAskedFor) {
 
 /// The control of the study: sand that yields after the solve holds on to what leaves.
 TEST(Parting, Lagged_HoldsTheBlocksTogether) {
-  StudyArguments arguments = tiny();
+  ImplicitStudyArguments arguments = tiny();
   arguments.modes = {"lagged", "exact"};
   arguments.steps = {1e-2};
   arguments.until = 0.5;
@@ -102,7 +102,7 @@ TEST(Parting, Lagged_HoldsTheBlocksTogether) {
 
 // Without weight there is nothing to measure a residual against but the impulses of the blocks themselves.
 TEST(Parting, InLongSteps_UnderATenthOfLagged) {
-  StudyArguments arguments;
+  ImplicitStudyArguments arguments;
   arguments.modes = {"lagged", "projected", "unilateral"};
   arguments.steps = {1e-2};
   arguments.most_seconds = 600;

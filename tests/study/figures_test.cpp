@@ -132,7 +132,7 @@ TEST(EnergyResidual, CountsGainsOrAllChange) {
   figure.counts = EnergyResidual::Counts::kChange;
   EXPECT_NEAR(figure.measure(record).value, 4.0 / 13.0, 1e-12);
   // What solids did is taken off.
-  for (Moment& moment : record.moments) moment.measured = {{"all", "work_of_solids", "J", -1.0}};
+  for (RunMoment& moment : record.moments) moment.measured = {{"all", "work_of_solids", "J", -1.0}};
   figure.probe = "all";
   EXPECT_NEAR(figure.measure(record).value, 2.0 / 13.0, 1e-12) << "10, 10, 8, 10";
 }
@@ -147,6 +147,13 @@ TEST(Period, OfADampedSwing_IsItsOwn) {
   EXPECT_NEAR(figure.measure(series(swing, 0.02, 800)).value, 1.7, 1e-4);
   figure.level = 9.0;
   EXPECT_THAT(figure.measure(series(swing, 0.02, 800)).why, HasSubstr("level"));
+}
+
+TEST(Swings, Heights_LieBetweenSamples) {
+  const auto swing = [](double t) { return 3.0 + 0.5 * std::sin(2.0 * pi * t / 1.7 + 0.3); };
+  const auto all = swings(series_of(series(swing, 0.17, 100), "probe.value"), 3.0);  // ten to a period
+  ASSERT_GT(all.size(), 10u);
+  for (const Swing& each : all) EXPECT_NEAR(each.height, 0.5, 0.002) << "the samples alone reach 0.476";
 }
 
 TEST(Damping, IsTheShareLostInAPeriod) {
@@ -168,7 +175,7 @@ RunRecord three_frames(const std::vector<std::string>& quantities,
   RunRecord record;
   const double times[] = {0.0, 1.0, 2.0, 4.0};
   for (std::size_t k = 0; k < 4; ++k) {
-    Moment moment;
+    RunMoment moment;
     moment.time = times[k];
     for (std::size_t q = 0; q < quantities.size(); ++q)
       moment.measured.push_back({"gate", quantities[q], "", values[q][k]});
@@ -233,6 +240,8 @@ TEST(DensityError, IsTheMeanDistanceFromSeededDensity) {
   EXPECT_NEAR(figure.measure(block(half)).value, 0.2 * std::sqrt(0.5), 1e-5);
   const auto surface = [](int i, int j, int k) { return i % 3 == 0 || j % 3 == 0 || k % 3 == 0 ? 0.7 : 1.0; };
   EXPECT_NEAR(figure.measure(block(surface)).value, 0.0, 1e-5) << "surfaces do not count";
+  const auto spray = [](int i, int j, int k) { return i % 3 == 0 || j % 3 == 0 || k % 3 == 0 ? 0.3 : 1.0; };
+  EXPECT_FALSE(figure.measure(block(spray)).there()) << "nor do cells beside what is less than half full";
 }
 
 TEST(Marginal, OfAShiftedHeap_IsTheShift) {

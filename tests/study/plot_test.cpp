@@ -30,6 +30,12 @@ TEST(Ticks, AreRoundNumbers) {
   for (const double tick : ticks(-1.0, 1.0, false)) EXPECT_LE(std::abs(tick), 1.0);
 }
 
+TEST(Ticks, Texts_TellNeighboursApart) {
+  EXPECT_THAT(tick_texts({10.02, 10.04, 10.06}), ElementsAre("10.02", "10.04", "10.06"));
+  EXPECT_THAT(tick_texts({0.1, 0.2, 0.5, 1.0}), ElementsAre("0.1", "0.2", "0.5", "1"));
+  EXPECT_THAT(tick_texts({1.0, 1.125, 1.25}), ElementsAre("1", "1.125", "1.25"));
+}
+
 /// Where the centre of the mark of a point is.
 std::pair<double, double> place_of(const std::string& picture, int point) {
   const std::regex circle("data-point=\"" + std::to_string(point) +
@@ -53,6 +59,14 @@ TEST(Plot, LogAxes_PutDecadesAtEqualDistances) {
   EXPECT_NEAR(y0 - y1, y1 - y2, 0.11);
   EXPECT_GT(x1, x0);
   EXPECT_LT(y1, y0) << "up is more";
+}
+
+TEST(Plot, AnErrorOfNothing_LiesOnTheLowerEdge) {
+  Plot plot{.name = "p", .title = "t", .x = {"x", true}, .y = {"y", true}};
+  plot.marks.push_back({.point = 0, .x = 1.0, .y = 2.0, .x_low = 1.0, .x_high = 1.0});
+  plot.marks.push_back({.point = 1, .x = 3.0, .y = 0.0, .x_low = 3.0, .x_high = 3.0});
+  const std::string picture = svg(plot);
+  EXPECT_GT(place_of(picture, 1).second, place_of(picture, 0).second + 50.0);
 }
 
 TEST(Plot, NoiseFloor_IsHatchedUpToTwiceOfIt) {

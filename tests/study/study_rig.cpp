@@ -54,7 +54,7 @@ RunRecord strips(const std::function<double(double)>& height, int count) {
 RunRecord series(const std::function<double(double)>& value, double dt, int count) {
   RunRecord record;
   for (int k = 0; k < count; ++k) {
-    Moment moment;
+    RunMoment moment;
     moment.time = k * dt;
     moment.measured.push_back({"probe", "value", "m", value(moment.time)});
     record.moments.push_back(moment);

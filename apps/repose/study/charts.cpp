@@ -38,6 +38,14 @@ int place_of(const std::string& value, const Vary& vary) {
   return static_cast<int>(std::find(vary.values.begin(), vary.values.end(), value) - vary.values.begin());
 }
 
+/// The last part of a key, where no other key ends in the same.
+std::string short_key(const std::string& key, const std::vector<Vary>& all) {
+  const auto last = [](const std::string& of) { return of.substr(of.rfind('.') + 1); };
+  const auto alike =
+      std::count_if(all.begin(), all.end(), [&](const Vary& other) { return last(other.key) == last(key); });
+  return alike > 1 ? key : last(key);
+}
+
 /// How the points of a sweep look, and which of them lines join.
 struct Looks {
   std::vector<Look> of_point;
@@ -82,7 +90,8 @@ Looks looks_of_product(const StudyHead& head, const StudyPlan& plan) {
           std::find(ordered.begin(), ordered.end(), value_of(point, path->key)) - ordered.begin();
       looks.depth.push_back(std::min(1.0, static_cast<double>(place) / last));
     }
-    looks.depth_text = path->key + " from " + ordered.front() + ", pale, to " + ordered.back();
+    looks.depth_text =
+        short_key(path->key, head.vary) + " from " + ordered.front() + ", pale, to " + ordered.back();
   }
   for (auto& [rest, points] : lines) {
     std::stable_sort(points.begin(), points.end(), [&](std::size_t a, std::size_t b) {
@@ -91,8 +100,8 @@ Looks looks_of_product(const StudyHead& head, const StudyPlan& plan) {
     looks.joined.push_back(points);
   }
   const bool shape_free = shape == nullptr;
-  const auto explain = [&looks, shape_free](const Vary& vary, bool by_colour, bool by_shape) {
-    looks.legend.push_back({vary.key, 0, LegendEntry::kHeading});
+  const auto explain = [&looks, &head, shape_free](const Vary& vary, bool by_colour, bool by_shape) {
+    looks.legend.push_back({short_key(vary.key, head.vary), 0, LegendEntry::kHeading});
     for (int k = 0; k < static_cast<int>(vary.values.size()); ++k)
       looks.legend.push_back({vary.values[static_cast<std::size_t>(k)], by_colour ? k : -1,
                               by_shape                  ? k
@@ -227,8 +236,10 @@ class Charts {
 
   Plot error() const {
     Plot plot = against_time("error");
-    plot.title = "Error of " + figure_.name + " against time";
-    plot.y = {with_unit("error of " + figure_.name, factor() == 100.0 ? "%" : figure_.unit()), true};
+    const bool itself = figure_.compares() == Compares::kItself;
+    plot.title = (itself ? "" : "Error of ") + figure_.name + " against time";
+    plot.y = {with_unit((itself ? "" : "error of ") + figure_.name, factor() == 100.0 ? "%" : figure_.unit()),
+              true};
     const double floor = summary_.references[index_].floor;
     if (std::isfinite(floor)) plot.floor = factor() * floor;
     Line front;
@@ -260,7 +271,7 @@ class Charts {
   Plot curves() const {
     Plot plot;
     plot.name = "curve-" + figure_.name;
-    plot.title = figure_.axes().y + " over " + figure_.axes().x;
+    plot.title = figure_.name;
     plot.x = {figure_.axes().x, false};
     plot.y = {figure_.axes().y, false};
     plot.legend = looks_.legend;
@@ -288,7 +299,7 @@ class Charts {
     const Reference& against = summary_.references[index_];
     const bool known = against.there && !against.value.curve.empty();
     if (known) add(against.value.curve, reference);
-    if (known) plot.title += "; the reference is dashed";
+    if (known) plot.title += ", the reference dashed";
     return plot;
   }
 

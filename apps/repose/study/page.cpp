@@ -209,7 +209,7 @@ std::string Page::table() const {
   for (std::size_t f = 0; f < plan_.study.figures.size(); ++f) {
     const Figure& figure = plan_.study.figures[f];
     column(figure.name + (figure.unit().empty() ? "" : " [" + figure.unit() + "]"));
-    if (summary_.references[f].there && is_share(figure.compares())) column("error [%]");
+    if (summary_.references[f].there && is_share(figure.compares())) column(figure.name + " error [%]");
   }
   std::string rows;
   for (std::size_t k = 0; k < summary_.points.size(); ++k) rows += row(k);
@@ -245,17 +245,17 @@ std::string Page::method() const {
   html += element(
       "p", "Each point was run with " + counted(static_cast<std::size_t>(plan_.study.seeds), "seed", "seeds") +
                " for the places of particles, each timed " +
-               counted(static_cast<std::size_t>(plan_.study.repeat), "time", "times") +
+               (plan_.study.repeat == 1 ? std::string("once") : std::to_string(plan_.study.repeat) + " times") +
                (report_.parallel > 1
                     ? ", " + std::to_string(report_.parallel) + " runs side by side, which slows each of them."
                     : ", one run after another.") +
                " A figure is the mean over seeds, its error the distance of that mean from the reference.");
-  html += element("p",
-                  "The noise floor is the standard error that the scatter of runs with other seeds alone gives "
-                  "such a distance: "
-                  "s \u221a(1/n + 1/m), with s the standard deviation of single runs, n the seeds of a point "
-                  "and m those of the "
-                  "reference. What lies below twice of it is hatched.");
+  html += element(
+      "p",
+      "The noise floor is the standard error that the scatter of runs with other seeds alone gives "
+      "such a distance: s \u221a(1/n + 1/m), with s the standard deviation of single runs, n the seeds "
+      "of a point and m those of the reference; s/\u221an where the reference is known. What lies below "
+      "twice of it is hatched.");
   return html + "</section>\n";
 }
 

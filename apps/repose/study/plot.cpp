@@ -93,7 +93,7 @@ Drawing::Drawing(const Plot& plot) : plot_(plot) {
 
 void Drawing::ranges() {
   for (const Mark& mark : plot_.marks) {
-    if (!shows(mark.x, mark.y)) continue;
+    if (!std::isfinite(mark.x) || !std::isfinite(mark.y)) continue;
     for (const double x : {mark.x, mark.x_low, mark.x_high}) x_.take(x, plot_.x.log);
     y_.take(mark.y, plot_.y.log);
   }
@@ -245,8 +245,10 @@ void Drawing::shape(int index, double x, double y, double r, const char* fill, c
 
 void Drawing::marks() {
   for (const Mark& mark : plot_.marks) {
-    if (!shows(mark.x, mark.y)) continue;
-    const double x = across(mark.x), y = down(mark.y);
+    // Where errors are drawn by their size, one of 0 lies on the lower edge.
+    const bool none = plot_.y.log && mark.y == 0.0;
+    if (!none && !shows(mark.x, mark.y)) continue;
+    const double x = across(mark.x), y = none ? bottom() : down(mark.y);
     const char* const colour = mark.pale ? "#9aa2ad" : colour_of(mark.colour);
     out_ += "<g class=\"mark" + std::string(mark.front ? " on-front" : "") + "\" data-point=\"" +
             std::to_string(mark.point) + "\"><title>" + escaped(mark.title) + "</title>";

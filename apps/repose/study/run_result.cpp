@@ -43,6 +43,7 @@ Json::Value to_json(const RunResult& run) {
   json["code"] = run.code;
   json["words"] = run.words;
   json["build"] = run.build;
+  json["scene"] = run.scene;
   json["hash"] = run.hash;
   json["spacing"] = run.spacing;
   json["time"] = run.time;
@@ -74,6 +75,7 @@ Result<RunResult> read_run_result(const std::string& path) {
   run.code = json["code"].asInt();
   run.words = json["words"].asString();
   run.build = json["build"].asString();
+  run.scene = json["scene"].asString();
   run.hash = json["hash"].asString();
   run.spacing = json["spacing"].asDouble();
   run.time = json["time"].asDouble();

@@ -171,10 +171,8 @@ TEST(ContactSet, Friction_LiesInCoulombsConeAndOpposesSlip) {
 /// Keeps what a contact did to a node.
 struct Kept {
   std::vector<std::pair<std::size_t, Vec3>>* changes;
-  Vec3 start = Vec3::Zero();
-  void before(const double* v) { start = Eigen::Map<const Vec3>(v); }
-  void after(std::size_t solid, const double*, const double* v) {
-    changes->emplace_back(solid, Eigen::Map<const Vec3>(v) - start);
+  void give(std::size_t solid, const double*, const double* change) {
+    changes->emplace_back(solid, Eigen::Map<const Vec3>(change));
   }
 };
 

@@ -199,6 +199,17 @@ TEST(SceneReader, OverrideBelowAKeyThatIsNotThere_MakesIt) {
   EXPECT_EQ(read(kSmall, {"gravity.acceleration=[0, 0, 1]"}).effect<Gravity>().acceleration, Vec3(0, 0, 1));
 }
 
+TEST(SceneReader, OverrideWithoutAValue_LeavesTheKeyOut) {
+  const Scene with = read(kSmall, {"grid.transfer=flip", "output={\"vtp\": true}"});
+  EXPECT_TRUE(with.output.vtp);
+  const Scene without =
+      read(kSmall, {"grid.transfer=flip", "output={\"vtp\": true}", "output.vtp=", "grid.transfer="});
+  EXPECT_FALSE(without.output.vtp);
+  EXPECT_EQ(without.grid.transfer, read(kSmall).grid.transfer);
+  // What is not there needs no removing, and nothing is made on the way.
+  EXPECT_EQ(read(kSmall, {"sleep.after="}).canonical, read(kSmall).canonical);
+}
+
 TEST(SceneReader, Overrides_ChangeParameters) {
   const Scene scene = read(kWhole, {"parameters.a=1"});
   EXPECT_EQ(scene.bodies[0].shape.center, Vec3(0, 2, 1));
