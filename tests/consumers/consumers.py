@@ -115,8 +115,8 @@ def python(folder):
     prefix, build = os.path.join(folder, "prefix"), os.path.join(folder, "build")
     install(prefix)
     configure_and_build(os.path.join(args.source, "python"), build, f"-DCMAKE_PREFIX_PATH={prefix}",
-                        f"-DPython_EXECUTABLE={PYTHON}", f"-DPYTHON_EXECUTABLE={PYTHON}")
-    run([args.cmake, "--install", build, "--prefix", prefix])
+                        f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DPYTHON_EXECUTABLE={PYTHON}")
+    run([args.cmake, "--install", build])
     where = {**os.environ, "PYTHONPATH": os.path.join(prefix, "lib/python3/dist-packages"),
              "LD_LIBRARY_PATH": os.path.join(prefix, "lib")}
     print(run([PYTHON, os.path.join(args.source, "tests", "consumers", "module_test.py")], env=where).strip())
