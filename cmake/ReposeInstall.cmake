@@ -8,8 +8,8 @@ install(TARGETS repose_shared EXPORT repose-targets
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime NAMELINK_COMPONENT development)
 install(TARGETS repose_static EXPORT repose-static-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
-install(FILES "${PROJECT_SOURCE_DIR}/api/include/repose/repose.h" "${PROJECT_SOURCE_DIR}/api/include/repose/repose.hpp"
-  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/repose" COMPONENT development)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/api/include/repose" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+  COMPONENT development)
 foreach(name IN ITEMS repose-targets repose-static-targets)
   install(EXPORT ${name} NAMESPACE repose:: DESTINATION "${package_folder}" COMPONENT development)
 endforeach()

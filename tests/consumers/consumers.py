@@ -177,8 +177,10 @@ def guide(folder):
         with open(os.path.join(EXAMPLES, name)) as file:
             if shown.get(name) != file.read():
                 sys.exit(f"docs/embedding.md does not show api/examples/{name} as it is")
-    with open(os.path.join(args.source, "api", "include", "repose", "repose.h")) as file:
-        declared = set(re.findall(r"\brepose_\w+", file.read()))
+    declared = set()
+    for header in glob.glob(os.path.join(args.source, "api", "include", "repose", "*.h")):
+        with open(header) as file:
+            declared |= set(re.findall(r"\brepose_\w+", file.read()))
     declared |= {name + "_init" for name in declared} | {"repose_static"}
     unknown = set(re.findall(r"\brepose_\w+", text)) - declared
     if unknown:
