@@ -135,7 +135,7 @@ void Corner<Real>::for_each_given(Give give) const {
 
 /// `solids` knows those near the node, in the order of the scene: size(), contact(k), friction(k), solid(k);
 /// meet(k, v) before the rest is asked of one: at(k), its place beside it, and wall(k), its velocity, or null.
-/// `record` is told what each gives (engine/plan/contact_log.h).
+/// `record` is told what each gives (engine/plan/contact_log.h). `tilde` may be `bar`.
 template <class Real, class Solids, class Record>
 [[gnu::always_inline]] inline void collide(const Solids& solids, Corner<Real>& corner, Real dt, Real* bar,
                                            Real* tilde, Record record) {
@@ -185,11 +185,12 @@ template <class Real, class Solids, class Record>
       record.give(static_cast<std::size_t>(solids.solid(actor)), solids.wall(actor), change);
   };
   give(start, bar);
-  std::copy_n(bar, 3, tilde);
+  const Real held[3] = {bar[0], bar[1], bar[2]};
+  std::copy_n(held, 3, tilde);
   const Real bound = solids.friction(actor) * impulse;
   if (!(bound > Real(0))) return;
   rub(solids.at(actor).normal, solids.wall(actor), bound, tilde);
-  give(bar, tilde);
+  give(held, tilde);
 }
 
 }  // namespace repose

@@ -38,10 +38,9 @@ struct TransferChoice {
   /// Whether particles store C.
   bool keeps_affine() const { return figures().affine != Affine::kNone; }
   /// Whether a step, after so many, measures what particles have for themselves; others hold what was found.
-  /// The first two do: what is found before C has come to fit the velocities would be held too long.
+  /// The first few do: what is found before C has come to fit the velocities must not be held.
   bool measures_own(std::int64_t step) const {
-    const bool due = step == 0 || step % steps_between_measures == 1 % steps_between_measures;
-    return figures().keeps_velocity && due;
+    return figures().keeps_velocity && (step < steps_between_measures || step % steps_between_measures == 0);
   }
   /// Share of it that is left after a step.
   double kept_over(double dt) const { return kept_velocity ? *kept_velocity : std::exp(-velocity_loss * dt); }

@@ -190,8 +190,10 @@ TEST_F(CommandErrors, BenchFileThatCannotBe_IsFoundBeforeTheWork) {
 }
 
 TEST_F(CommandErrors, PhysicsThatGivesOut_NamesTheParticleAndLeavesABundle) {
-  // Gravity is no limit of the step, so this one throws particles over cells even in an eighth of the step.
-  const std::string scene = tiny_scene(R"(, "gravity": {"acceleration": [0, -1e9, 0]})");
+  // A force field is no limit of the step, so this one throws particles over cells even in an eighth of the
+  // step.
+  const std::string scene =
+      tiny_scene(R"(, "force_fields": [{"name": "hurl", "type": "uniform", "acceleration": [0, -1e9, 0]}])");
   const Finished finished = repose({"run", scene, "--out", path("out"), "--quiet"});
   EXPECT_EQ(finished.code, 70);
   EXPECT_THAT(finished.err, HasSubstr("particle "));

@@ -168,13 +168,14 @@ TEST_F(StepRowsOfARun, ExplicitSteps_HaveNothingOfASolve) {
 }
 
 TEST_F(StepRowsOfARun, StepsMadeShorter_AreToldWithTheFirstReason) {
-  // The limits of a step do not see that gravity would throw the box a cell and a half from rest.
-  std::vector<std::string> words{"run",   tiny_scene(),
-                                 "--out", path("out"),
-                                 "--set", R"(output={"vdb": false, "steps": true})",
-                                 "--set", "time={\"frames\": 1, \"frames_per_second\": 1000}",
-                                 "--set", "gravity.acceleration=[0, -1.2e5, 0]",
-                                 "--set", "colliders=[]"};
+  // The limits of a step do not see that a force would throw the box a cell and a half from rest.
+  std::vector<std::string> words{
+      "run",   tiny_scene(),
+      "--out", path("out"),
+      "--set", R"(output={"vdb": false, "steps": true})",
+      "--set", "time={\"frames\": 1, \"frames_per_second\": 1000}",
+      "--set", R"(force_fields=[{"name": "hurl", "type": "uniform", "acceleration": [0, -1.2e5, 0]}])",
+      "--set", "colliders=[]"};
   const Finished run = repose(words);
   ASSERT_EQ(run.code, 0) << run.err;
   const Json::Value log = read_json(path("out/run.json")), frame = log["frames"][0], first = log["steps"][0];

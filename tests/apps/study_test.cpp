@@ -213,9 +213,9 @@ TEST_F(StudyCommand, SceneThatIsEditedMeanwhile_GivesNoRunsOfAnother) {
 }
 
 TEST_F(StudyCommand, RefusedAndFailedPoints_AreKept) {
-  // Gravity is no limit of the step, so such a one throws particles over cells even in an eighth of it.
+  // A force field is no limit of the step, so such a one throws particles over cells even in an eighth of it.
   const Words words{"--vary", "grid.transfer=apic,no_such", "--vary",
-                    R"(gravity={"acceleration": [0, -9.81, 0]},{"acceleration": [0, -1e9, 0]})"};
+                    R"(force_fields=[],[{"name": "hurl", "type": "uniform", "acceleration": [0, -1e9, 0]}])"};
   const Finished finished = study(tiny_scene(kStudy), "out", words);
   ASSERT_EQ(finished.code, 0) << finished.err;
   const Json::Value points = read_json(path("out/study.json"))["points"];

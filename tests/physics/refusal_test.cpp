@@ -12,15 +12,16 @@
 namespace repose {
 namespace {
 
-/// A block that a gravity of 1e9 m/s^2 would throw over many cells in one step, even an eighth of it: gravity
-/// is no limit of the step, because a step sees it only in what it does.
+/// A block that a force of 1e9 m/s^2 would throw over many cells in one step, even an eighth of it: such a
+/// field is no limit of the step, because a step sees it only in what it does.
 constexpr const char* kHurled = R"json({"repose": 1, "name": "hurled", "grid": {"spacing": 0.01}, "time": {},
   "materials": {"rubber": {"type": "elastic"}},
   "bodies": [{"name": "block", "material": "rubber",
               "shape": {"type": "box", "lower": [0, 0.1, 0], "upper": [0.08, 0.18, 0.08]}}],
-  "gravity": {"acceleration": [0, -1e9, 0]}})json";
+  "gravity": {"acceleration": [0, 0, 0]},
+  "force_fields": [{"name": "hurl", "type": "uniform", "acceleration": [0, -1e9, 0]}]})json";
 
-TEST(Refusal, GravityThatThrowsOverCells_IsErrorOfPhysics) {
+TEST(Refusal, ForceThatThrowsOverCells_IsErrorOfPhysics) {
   const auto simulation = simulate(scene_of(kHurled), 2);
   const std::uint64_t before = simulation->hash();
   const auto step = simulation->step();
@@ -37,8 +38,8 @@ TEST(Refusal, GravityThatThrowsOverCells_IsErrorOfPhysics) {
   EXPECT_EQ(simulation->counters().time, 0.0);
 }
 
-TEST(Refusal, ModerateGravity_IsAccepted) {
-  const auto simulation = simulate(scene_of(kHurled, {"gravity.acceleration=[0,-1e4,0]"}), 2);
+TEST(Refusal, ModerateForce_IsAccepted) {
+  const auto simulation = simulate(scene_of(kHurled, {"force_fields.hurl.acceleration=[0,-1e4,0]"}), 2);
   const std::uint64_t before = simulation->hash();
   const auto step = simulation->step();
   ASSERT_TRUE(step) << step.error().text();
@@ -46,7 +47,7 @@ TEST(Refusal, ModerateGravity_IsAccepted) {
 }
 
 TEST(Refusal, VelocityThatIsNoNumber_IsErrorOfPhysics) {
-  Scene scene = scene_of(kHurled, {"gravity.acceleration=[0,0,0]"});
+  Scene scene = scene_of(kHurled, {"force_fields.hurl.acceleration=[0,0,0]"});
   scene.bodies[0].velocity = Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0);
   const auto simulation = simulate(scene, 2);
   const auto step = simulation->step();
@@ -64,8 +65,8 @@ struct Forced {
 /// A block that flies at 1 m/s for `sound_steps` steps within the limits, then takes one of `max_step` seconds
 /// with limits that no scene could ask for.
 Forced force(int sound_steps, double max_step) {
-  const Scene scene = scene_of(
-      kHurled, {"grid.precision=double", "gravity.acceleration=[0,0,0]", "bodies.block.velocity=[1,0.3,0]"});
+  const Scene scene = scene_of(kHurled, {"grid.precision=double", "force_fields.hurl.acceleration=[0,0,0]",
+                                         "bodies.block.velocity=[1,0.3,0]"});
   auto compiled = compile_scene<double>(scene, {});
   EXPECT_TRUE(compiled);
   constexpr double kNoFrame = std::numeric_limits<double>::infinity();
@@ -110,7 +111,7 @@ TEST(Refusal, StepThatHalvingsMakeRight_IsAccepted) {
 TEST(Refusal, SpeedWhoseSquareOverflows_IsRefused) {
   // 1e20 m/s fits a float and its square does not: the first step would be of no length, for ever.
   const auto made = Simulation::create(
-      scene_of(kHurled, {"gravity.acceleration=[0,0,0]", "bodies.block.velocity=[1e20,0,0]"}));
+      scene_of(kHurled, {"force_fields.hurl.acceleration=[0,0,0]", "bodies.block.velocity=[1e20,0,0]"}));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().kind, ErrorKind::kBadScene);
   EXPECT_NE(made.error().text().find("bodies: allows steps of"), std::string::npos) << made.error().text();
