@@ -144,7 +144,9 @@ template <class Real, class Solids, class Record>
   std::size_t acting = 0, actor = 0;
   for (std::size_t k = 0; k < solids.size(); ++k) {
     solids.meet(k, bar);
-    if (!constrain(solids.contact(k), solids.at(k), solids.wall(k), dt, bar, impulse)) continue;
+    Real gives;
+    if (!constrain(solids.contact(k), solids.at(k), solids.wall(k), dt, bar, gives)) continue;
+    impulse = gives;
     ++acting;
     actor = k;
   }

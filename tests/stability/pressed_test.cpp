@@ -220,11 +220,11 @@ TEST(Battery, Case39_PressedToNothingHasBoundedEnergyOrStops) {
         stops += one.stopped ? 1.0 : 0.0;
       }
       const std::string what = "energy beyond what was given, of it; " + contact + ", " + integrator;
-      if (contact == "separating") {
+      if (contact == "separating" || integrator == "implicit") {
         c.at_most(what, worst.surplus, 1e-2);
       } else {
         c.at_most(what, worst.surplus, 1e-2, "",
-                  {1.5, "nodes that two sticky solids hold tell too little of the solids' work"});
+                  {0.03, "an explicit step beyond what the plates gave; its cause is not known"});
       }
     }
   }

@@ -1,5 +1,5 @@
-// Repose tests: a node that several solids meet at once: the velocity nearest to its own that none forbids, power
-// that comes of nothing but what the solids do, and friction along what none holds.
+// Repose tests: a node that several solids meet at once: the velocity nearest to its own that none forbids,
+// power that comes of nothing but what the solids do, and friction along what none holds.
 #include "engine/plan/collide.h"
 
 #include <gtest/gtest.h>
@@ -205,6 +205,16 @@ TEST(Corner, PlatesThatCloseThrowNothing) {
     EXPECT_LE(std::abs(met.bar[0]), 2.0 + 1e-12);
     EXPECT_LT((met.tilde - Vec3(speed, 1, 0)).dot(met.tilde), met.work() + 1e-9);
   }
+}
+
+// A solid that is near and does nothing changes nothing, before and after the one that acts.
+TEST(Corner, FrictionOfOneSolidIsItsOwnWhateverElseIsNear) {
+  const Wall floor{Vec3(0, 1, 0), Vec3(0, 0, 0), Contact::kSeparating, 0.3};
+  const Wall far{Vec3(-1, 0, 0), Vec3(0, 0, 0), Contact::kSeparating, 0.5, 1.0};
+  const Vec3 alone = meet({floor}, Vec3(3, -2, 1)).tilde;
+  EXPECT_NEAR(alone.norm(), Vec3(3, 0, 1).norm() - 0.6, 1e-12);
+  EXPECT_EQ(meet({floor, far}, Vec3(3, -2, 1)).tilde, alone);
+  EXPECT_EQ(meet({far, floor}, Vec3(3, -2, 1)).tilde, alone);
 }
 
 TEST(Corner, WallsAtRightAnglesActAsOneAfterTheOther) {
