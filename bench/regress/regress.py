@@ -1,0 +1,93 @@
+"""Whether anything takes more than it did. See regress.sh.
+Exit codes: 0 as before, 1 worse, 2 could not measure."""
+import argparse
+import concurrent.futures
+import os
+import sys
+
+import baselines
+import cases
+import measure
+import paired
+import report
+
+
+def measure_all(program, quick, no_timer, jobs):
+    chosen = [case for case in cases.CASES if case.quick or not quick]
+    figures, where, lines = {}, {}, {}
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        made = {case.name: pool.submit(measure.of_case, program, case, no_timer, not quick) for case in chosen}
+        solves = {case.name: pool.submit(measure.of_solves, program, case) for case in chosen if "implicit" in case.name}
+        output = pool.submit(measure.of_output, program)
+        for case in chosen:
+            found, where[case.name], lines[case.name] = made[case.name].result()
+            if case.name in solves:
+                found.update(solves[case.name].result())
+            figures.update({f"{case.name}: {name}": figure for name, figure in found.items()})
+        figures.update({f"output: {name}": figure for name, figure in output.result().items()})
+    return figures, where, lines
+
+
+def gate(options):
+    known = baselines.read(options.baselines)
+    measured, where, lines = measure_all(options.program, options.quick, options.no_timer, options.jobs)
+    if options.quick:  # of what the whole gate knows, what the quick one asks
+        known = {name: figure for name, figure in known.items() if name in measured}
+    if not known and not options.accept:
+        print("regress: nothing has been accepted yet; --accept \"REASON\" makes what is measured the baseline", file=sys.stderr)
+        return 2
+    rows = baselines.compare(known, measured)
+    told = report.text(rows, where, lines, options.baselines)
+    print(told)
+    if options.report:
+        os.makedirs(options.report, exist_ok=True)
+        for name, content in (("report.txt", told), ("report.md", report.markdown(rows)),
+                              ("index.html", report.page(rows, told, options.baselines))):
+            with open(os.path.join(options.report, name), "w") as file:
+                file.write(content)
+    if options.accept:
+        if options.quick:
+            sys.exit("regress: the whole gate is accepted, not its quick part")
+        baselines.accept(options.baselines, known, measured, where, options.accept)
+        return 0
+    return 1 if any(row[0] in ("worse", "gone", "new") for row in rows) else 0
+
+
+def ab(options):
+    worse = False
+    print("| case | median of HEAD / BASE | 95 % | verdict |\n| --- | --- | --- | --- |")
+    for case in cases.CASES:
+        if not case.quick:
+            continue
+        median, low, high = paired.ratio(options.base, options.head, case, options.pairs)
+        slower = low > paired.WORSE
+        worse = worse or slower
+        print(f"| {case.name} | {median:.4f} | {low:.4f} to {high:.4f} | {'slower' if slower else 'no slower'} |", flush=True)
+    return 1 if worse else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    of_gate = commands.add_parser("gate")
+    of_gate.add_argument("program")
+    of_gate.add_argument("--no-timer", required=True, help="a library, for valgrind")
+    of_gate.add_argument("--baselines", required=True)
+    of_gate.add_argument("--quick", action="store_true")
+    of_gate.add_argument("--accept", default="", metavar="REASON")
+    of_gate.add_argument("--report", default="", metavar="FOLDER")
+    of_gate.add_argument("--jobs", type=int, default=os.cpu_count())
+    of_ab = commands.add_parser("ab")
+    of_ab.add_argument("base")
+    of_ab.add_argument("head")
+    of_ab.add_argument("--pairs", type=int, default=25)
+    options = parser.parse_args()
+    try:
+        return gate(options) if options.command == "gate" else ab(options)
+    except measure.CannotMeasure as error:
+        print(f"regress: could not measure: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())
