@@ -9,13 +9,10 @@
 // costs. Both are counted, never timed.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/parallel.h"
-#include "engine/state/ownership.h"
-#include "engine/state/state.h"
+#include "engine/state/set_sort.h"
 
 namespace repose {
 
@@ -34,64 +31,23 @@ class BlockSort {
   std::size_t scratch_bytes() const;
 
  private:
-  /// Where the particles that leave an old block go: offsets of the 27 groups in its range of movers.
-  using Departures = std::array<std::uint32_t, kNeighbours + 1>;
+  using Departures = typename SetSort<Real>::Departures;
 
-  struct OldOccupied {
-    Departures departures;
-    bool in_order;  ///< nobody leaves, and those who stay are sorted
-  };
-
-  /// Of one set, so that channels and spares that change places have one size.
-  struct Buffers {
-    AlignedArray<std::uint8_t> cell;  ///< base node in the block that the particle comes to, and kMoves
-    /// While sorting, who leaves, by old block and destination; then the target of the channel that is moved.
-    AlignedArray<Real> spare;
-    AlignedArray<std::uint32_t> permutation;  ///< new place -> old place; at last the ids
-    std::vector<std::uint32_t> held;          ///< old occupied blocks that had some of it
-    std::vector<OldOccupied> old;             ///< per block held
-    bool everywhere;                          ///< held is all of them
-    std::vector<std::uint32_t> reached;       ///< new occupied blocks that get some of it
-    std::vector<std::uint8_t> reaches;        ///< per new occupied block, while those are found
-    std::vector<std::uint32_t> begin;         ///< per new occupied block
-    /// Old places of those who come from another block, per new occupied block: asked for ahead, since they lie
-    /// far away. Only a hint, so it has room for an eighth of the particles and forgets the rest.
-    AlignedArray<std::uint32_t> arrivals;
-    std::vector<std::uint32_t> arrivals_begin;
-
-    std::uint32_t* movers() { return reinterpret_cast<std::uint32_t*>(spare.data()); }
-    const std::uint32_t* movers() const { return reinterpret_cast<const std::uint32_t*>(spare.data()); }
-    /// Null where an old occupied block had none of it.
-    const OldOccupied* find(std::size_t occupied) const;
-  };
-
-  void prepare(const ParticleSet<Real>& set, std::size_t old_count, Buffers& buffers);
-  void classify(const ParticleSet<Real>& set, std::size_t held, const Locator<Real>& locator,
-                Buffers& buffers) const;
-  bool update_grid(State<Real>& state);
-  bool same_occupied(const State<Real>& state);
   template <class Visit>
-  void for_each_arrival(const State<Real>& state, std::size_t k, std::size_t occupied, Visit visit) const;
-  void find_reached(const State<Real>& state, std::size_t k);
-  template <class ForEach>
-  void share_out(const State<Real>& state, std::size_t k, const ForEach& for_each);
-  void sort_occupied(const State<Real>& state, std::size_t k, std::size_t occupied);
-  void collect(const State<Real>& state, std::size_t k, std::size_t occupied, std::size_t first,
-               std::size_t last);
-  template <class ForEach>
-  void move_channels(ParticleSet<Real>& set, Buffers& buffers, const ForEach& for_each,
-                     const Locator<Real>& locator) const;
-  template <class ForEach>
-  void place(State<Real>& state, std::size_t k, const ForEach& for_each, const Locator<Real>& locator);
+  void for_each_held(const State<Real>& state, Visit visit) const;
+  template <class Body>
+  void for_each_set(Threads& threads, const State<Real>& state, const Body& body);
+  bool same_occupied(const State<Real>& state);
+  void list_new_blocks(const State<Real>& state);
+  bool update_grid(State<Real>& state);
 
-  std::vector<Buffers> buffers_;      // per set
-  std::vector<std::int32_t> source_;  // per block of the new grid: the old occupied block there, or -1
-  std::vector<std::uint32_t>
-      weight_;  // per old occupied block: particles after the event, if occupied blocks stay
-  std::vector<Index3> old_blocks_, new_blocks_;  // of occupied blocks
+  std::vector<SetSort<Real>> sets_;
+  std::vector<std::int32_t> source_;   // per block of the new grid: the old occupied block there, or -1
+  std::vector<std::uint32_t> weight_;  // per old occupied block: particles after the event, if such blocks stay
   std::vector<std::uint32_t> receives_;  // per old occupied block: neighbours that get some of its particles
-  std::vector<std::size_t> small_;       // sets
-  std::vector<std::vector<std::uint64_t>> keys_;  // per thread
+  std::vector<Index3> old_blocks_, new_blocks_;  // of occupied blocks
+  std::vector<std::size_t> small_;               // sets that are not worth all threads
+  SortKeys keys_;
 };
 
 /// Puts freshly seeded particles, whose channels are filled in id order and whose positions are in cells from

@@ -22,12 +22,12 @@ float mark(std::uint32_t id, int c) {
   return static_cast<float>(id * 32 + static_cast<std::uint32_t>(c));
 }
 
-/// Particles at random in the cells from `lower` to below `upper`, in two sets; every channel but the position
+/// Particles at random in the cells from `lower` to below `upper`, in some sets; every channel but the position
 /// is marked.
 struct Making {
   Index3 lower{-9, -9, -9}, upper{9, 9, 9};
-  std::uint32_t count = 2000;
-  std::uint32_t storage_seed = 0;  ///< the order in which they are handed over
+  std::uint32_t sets = 2, count = 2000;  ///< in each
+  std::uint32_t storage_seed = 0;        ///< the order in which they are handed over
   Topology topology{};
   Index3 origin{0, 0, 0};
   Ownership ownership{};
@@ -38,8 +38,8 @@ State<float> make_state(const Making& making) {
   state.spacing = 0.25;
   state.topology = making.topology;
   state.origin_cells = making.origin;
-  std::vector<std::vector<Index3>> cells(2);
-  for (std::uint32_t k = 0; k < 2; ++k) {
+  std::vector<std::vector<Index3>> cells(making.sets);
+  for (std::uint32_t k = 0; k < making.sets; ++k) {
     ParticleSet<float>& set = state.sets.emplace_back();
     if (k == 1) set.extra.push_back({"gained", {}});
     set.allocate(making.count);
@@ -201,6 +201,46 @@ TEST(BlockSort, AnyNumberOfThreads_SameBits) {
   }
   expect_same(one, two);
   expect_same(one, seven);
+}
+
+// Sets of few particles are each sorted by one thread, and know of few blocks.
+TEST(BlockSort, ManySmallSets_AreWholeAndTheSameForAnyThreads) {
+  const Making many{.lower = {-20, -9, -9}, .upper = {20, 9, 9}, .sets = 60, .count = 40};
+  State<float> one = make_state(many), two = make_state(many), seven = make_state(many);
+  for (const auto& [state, threads] : {std::pair{&one, 1}, std::pair{&two, 2}, std::pair{&seven, 7}}) {
+    for (const int cells : {0, 1, 4}) {
+      drift(*state, cells);
+      const auto before = places(*state);
+      order(*state, threads);
+      expect_ordered(*state);
+      expect_same_places(*state, before);
+    }
+  }
+  expect_same(one, two);
+  expect_same(one, seven);
+}
+
+TEST(BlockSort, BlocksKnowTheirSets) {
+  State<float> state = make_state({.sets = 30, .count = 20});
+  const auto expect_listed = [&state](const char* when) {
+    std::size_t fewer = 0;
+    for (std::size_t occupied = 0; occupied < state.grid.occupied_blocks().size(); ++occupied) {
+      std::vector<std::uint32_t> have;
+      for (std::uint32_t k = 0; k < state.sets.size(); ++k) {
+        if (state.sets[k].begin[occupied] < state.sets[k].begin[occupied + 1]) have.push_back(k);
+      }
+      const auto listed = state.sets_of_blocks.of(occupied);
+      ASSERT_EQ(std::vector(listed.begin(), listed.end()), have) << when;
+      fewer += have.size() < state.sets.size() ? 1 : 0;
+    }
+    ASSERT_GT(fewer, 0u) << "all sets are everywhere";
+  };
+  expect_listed("placed");
+  order(state);
+  expect_listed("sorted");
+  drift(state, 4);
+  order(state);
+  expect_listed("sorted anew");
 }
 
 TEST(BlockSort, OrderedTwice_ChangesNothing) {
