@@ -83,9 +83,11 @@ void Corner<Real>::settle(Real* v) {
 template <class Real>
 bool Corner<Real>::let_go() {
   Hold<Real>* pulls = nullptr;
-  for (Hold<Real>& hold : holds_) {
-    if (!hold.active || hold.constraint.contact != Contact::kSeparating || !(hold.push < Real(0))) continue;
-    if (pulls == nullptr || hold.push < pulls->push) pulls = &hold;
+  for (std::size_t k = 0; k < holds_.size(); ++k) {
+    Hold<Real>& hold = holds_[k];
+    // One that holds nothing of its own stays: let go, it would be passed and taken up again, for ever.
+    if (!directions_.spans(k) || hold.constraint.contact != Contact::kSeparating) continue;
+    if (hold.push < (pulls == nullptr ? Real(0) : pulls->push)) pulls = &hold;
   }
   if (pulls != nullptr) pulls->active = false;
   return pulls != nullptr;
@@ -133,6 +135,27 @@ void Corner<Real>::for_each_given(Give give) const {
   }
 }
 
+/// Of v* in `bar`, where more than one of the solids acts.
+template <class Real, class Solids, class Record>
+void collide_in_corner(const Solids& solids, Corner<Real>& corner, Real dt, Real* bar, Real* tilde,
+                       Record record) {
+  corner.clear();
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    const auto& at = solids.at(k);
+    const Contact contact = solids.contact(k);
+    if (contact != Contact::kSeparating && !(at.distance < Real(0))) continue;
+    Constraint<Real> hold = constraint_of(contact, at, solids.wall(k), dt);
+    hold.solid = solids.solid(k);
+    hold.friction = solids.friction(k);
+    corner.add(hold);
+  }
+  corner.settle(bar);
+  std::copy_n(bar, 3, tilde);
+  corner.rub(tilde);
+  corner.for_each_given(
+      [&](std::size_t solid, const Real* wall, const Real* change) { record.give(solid, wall, change); });
+}
+
 /// `solids` knows those near the node, in the order of the scene: size(), contact(k), friction(k), solid(k);
 /// meet(k, v) before the rest is asked of one: at(k), its place beside it, and wall(k), its velocity, or null.
 /// `record` is told what each gives (engine/plan/contact_log.h). `tilde` may be `bar`.
@@ -163,22 +186,8 @@ template <class Real, class Solids, class Record>
     return false;
   };
   if (acting > 1 || drives()) {
-    corner.clear();
-    for (std::size_t k = 0; k < solids.size(); ++k) {
-      const auto& at = solids.at(k);
-      const Contact contact = solids.contact(k);
-      if (contact != Contact::kSeparating && !(at.distance < Real(0))) continue;
-      Constraint<Real> hold = constraint_of(contact, at, solids.wall(k), dt);
-      hold.solid = solids.solid(k);
-      hold.friction = solids.friction(k);
-      corner.add(hold);
-    }
     std::copy_n(start, 3, bar);
-    corner.settle(bar);
-    std::copy_n(bar, 3, tilde);
-    corner.rub(tilde);
-    corner.for_each_given(
-        [&](std::size_t solid, const Real* wall, const Real* change) { record.give(solid, wall, change); });
+    collide_in_corner(solids, corner, dt, bar, tilde, record);
     return;
   }
   const auto give = [&](const Real* from, const Real* to) {

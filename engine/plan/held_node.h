@@ -3,6 +3,7 @@
 // explicit steps (engine/plan/collide.h) and implicit ones (engine/implicit/contact_set.h) agree on how.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "engine/base/vector.h"
@@ -28,6 +29,8 @@ class HeldDirections {
   /// it prescribes while those before it are met.
   void span(ConstHolds holds);
   int rank() const { return rank_; }
+  /// Whether hold k holds something of its own, which others that are alike, or opposite, do not.
+  bool spans(std::size_t k) const { return std::find(hold_, hold_ + rank_, k) != hold_ + rank_; }
 
   /// A velocity, brought to what the holds prescribe.
   template <class At>

@@ -128,6 +128,19 @@ TEST(ContactSet, InASharpCorner_BothWallsRubByWhatEachBears) {
   EXPECT_NEAR(std::abs(node.reaction()[2]), kFriction * 1.3, 1e-9);
 }
 
+// Else it is taken up and let go in every iteration, and no contact ever settles.
+TEST(ContactSet, OfOppositeWalls_TheOneThatHoldsNothingStays) {
+  const Vec3 up(0.0, 1.0, 0.0);
+  OneNode node(std::vector<Vec3>{up, -up});
+  node.set_velocity(node.wall - 0.1 * up);
+  EXPECT_EQ(node.contacts.take_up(0, node.velocities), 1);
+  node.set_velocity(node.wall + 0.1 * up);
+  EXPECT_EQ(node.contacts.take_up(0, node.velocities), 1);
+  EXPECT_EQ(node.contacts.directions(), 1);
+  node.react(node.wall, up);  // against the other
+  EXPECT_EQ(node.contacts.release(0), 0);
+}
+
 TEST(ContactSet, WallsAFewDegreesApart_AreOne) {
   for (const double degrees : {0.0, 2.0, 9.0, 12.0}) {
     const double angle = degrees * std::numbers::pi / 180.0;

@@ -207,6 +207,12 @@ TEST(Corner, PlatesThatCloseThrowNothing) {
   }
 }
 
+// Of opposite walls one holds nothing; it must not keep a third from being met.
+TEST(Corner, BetweenPlatesThatCloseASideWallHolds) {
+  const std::vector<Wall> walls{{Vec3(0, 1, 0)}, {Vec3(0, -1, 0), Vec3(0, -2, 0)}, {Vec3(-1, 0, 0)}};
+  EXPECT_LE(meet(walls, Vec3(0.5, 0, 0)).bar[0], 1e-12);
+}
+
 // A solid that is near and does nothing changes nothing, before and after the one that acts.
 TEST(Corner, FrictionOfOneSolidIsItsOwnWhateverElseIsNear) {
   const Wall floor{Vec3(0, 1, 0), Vec3(0, 0, 0), Contact::kSeparating, 0.3};
