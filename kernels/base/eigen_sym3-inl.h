@@ -59,10 +59,9 @@ REPOSE_INLINE Eigen3<N> eigen_sym3(Sym3<N> a) {
   constexpr int kSweeps = sizeof(T) == 4 ? 5 : 6;
   const N zero(T(0)), one(T(1));
   const N largest = max(max(max(abs(a.xx), abs(a.yy)), max(abs(a.zz), abs(a.xy))), max(abs(a.xz), abs(a.yz)));
-  // Below the smallest normal number a matrix is zero.
-  const auto counts = !(largest <= N(std::numeric_limits<T>::min()));
-  const N scale = select(counts, largest, one);
-  a = select(counts, one / scale, zero) * a;
+  const N least(std::numeric_limits<T>::min());  // whose inverse is a number still
+  const N scale = select(largest > least, largest, least);
+  a = (one / scale) * a;
   Eigen3<N> result{{}, {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}};
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     jacobi_rotate(a.xx, a.yy, a.xy, a.xz, a.yz, result.u, 0, 1);
