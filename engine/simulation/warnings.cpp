@@ -70,15 +70,30 @@ struct Fastest {
 template <class Real>
 Fastest<Real> find_fastest(const State<Real>& state) {
   Fastest<Real> fastest;
-  for (const auto& set : state.sets) {
-    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
-      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
-        const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
-        if (v.norm() > fastest.speed) fastest = {&set, occupied, p, v.norm()};
-      }
-    }
-  }
+  for_each_in_blocks(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
+    const Vec3 v(double(set.velocity[0][p]), double(set.velocity[1][p]), double(set.velocity[2][p]));
+    if (v.norm() > fastest.speed) fastest = {&set, occupied, p, v.norm()};
+  });
   return fastest;
+}
+
+/// How many particles of a block have come to the least stretch but for some rounding.
+template <class Real>
+std::uint64_t crushed(const ParticleSet<Real>& set, std::size_t occupied) {
+  const double least = std::log(1.05 * static_cast<double>(kSmallestStretch<Real>));
+  std::uint64_t count = 0;
+  for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
+    double eps[kStrainComponents];  // xx xy xz yy yz zz
+    for (std::size_t k = 0; k < kStrainComponents; ++k) eps[k] = double(set.strain[k][p]);
+    const double off = eps[1] * eps[1] + eps[2] * eps[2] + eps[4] * eps[4];
+    const double square = eps[0] * eps[0] + eps[3] * eps[3] + eps[5] * eps[5] + 2.0 * off;
+    if (square < least * least) continue;
+    Mat3 strain;
+    strain << eps[0], eps[1], eps[2], eps[1], eps[3], eps[4], eps[2], eps[4], eps[5];
+    const Eigen::SelfAdjointEigenSolver<Mat3> of(strain, Eigen::EigenvaluesOnly);
+    count += of.eigenvalues().minCoeff() <= least ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace
@@ -170,29 +185,6 @@ std::optional<std::string> speed_warning(const StepPlan<Real>& plan, const State
       x[0], x[1], x[2], fastest.speed, cut.dt, allowed);
   return "particle " + std::to_string(fastest.set->id[fastest.particle]) + " of '" + fastest.set->name + text;
 }
-
-namespace {
-
-/// How many particles of a block have come to the least stretch but for some rounding.
-template <class Real>
-std::uint64_t crushed(const ParticleSet<Real>& set, std::size_t occupied) {
-  const double least = std::log(1.05 * static_cast<double>(kSmallestStretch<Real>));
-  std::uint64_t count = 0;
-  for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) {
-    double eps[kStrainComponents];  // xx xy xz yy yz zz
-    for (std::size_t k = 0; k < kStrainComponents; ++k) eps[k] = double(set.strain[k][p]);
-    const double off = eps[1] * eps[1] + eps[2] * eps[2] + eps[4] * eps[4];
-    const double square = eps[0] * eps[0] + eps[3] * eps[3] + eps[5] * eps[5] + 2.0 * off;
-    if (square < least * least) continue;
-    Mat3 strain;
-    strain << eps[0], eps[1], eps[2], eps[1], eps[3], eps[4], eps[2], eps[4], eps[5];
-    const Eigen::SelfAdjointEigenSolver<Mat3> of(strain, Eigen::EigenvaluesOnly);
-    count += of.eigenvalues().minCoeff() <= least ? 1 : 0;
-  }
-  return count;
-}
-
-}  // namespace
 
 template <class Real>
 std::optional<std::string> crushed_warning(const State<Real>& state, Threads& threads) {

@@ -132,17 +132,22 @@ struct State {
   }
 };
 
+/// Calls visit(set, occupied block, p) for all particles.
+template <class Real, class Visit>
+void for_each_in_blocks(const State<Real>& state, Visit visit) {
+  for (const ParticleSet<Real>& set : state.sets) {
+    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
+      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) visit(set, occupied, p);
+    }
+  }
+}
+
 /// Calls visit(set, p, x) for all particles, x its position in metres, in the scene's frame.
 template <class Real, class Visit>
 void for_each_particle(const State<Real>& state, Visit visit) {
-  const auto occupied_blocks = state.grid.occupied_blocks();
-  for (const ParticleSet<Real>& set : state.sets) {
-    for (std::size_t occupied = 0; occupied < occupied_blocks.size(); ++occupied) {
-      const Index3 block = state.grid.occupied_coordinates(occupied);
-      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p)
-        visit(set, p, state.world(block, set, p));
-    }
-  }
+  for_each_in_blocks(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
+    visit(set, p, state.world(state.grid.occupied_coordinates(occupied), set, p));
+  });
 }
 
 }  // namespace repose

@@ -60,16 +60,6 @@ FailedParticle particle_at(const State<Real>& state, const ParticleSet<Real>& se
   return failed;
 }
 
-/// Calls visit(set, occupied block, p).
-template <class Real, class Visit>
-void visit_particles(const State<Real>& state, Visit visit) {
-  for (const auto& set : state.sets) {
-    for (std::size_t occupied = 0; occupied + 1 < set.begin.size(); ++occupied) {
-      for (std::size_t p = set.begin[occupied]; p < set.begin[occupied + 1]; ++p) visit(set, occupied, p);
-    }
-  }
-}
-
 }  // namespace
 
 /// By its velocity and what its C tells nodes a cell away; one that is not a number comes first.
@@ -77,7 +67,7 @@ template <class Real>
 FailedParticle fastest_particle(const State<Real>& state, std::string what, std::string advice) {
   FailedParticle fastest;
   double most = -1.0;
-  visit_particles(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
+  for_each_in_blocks(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
     double size = 0.0;
     for (const auto& v : set.velocity) size += double(v[p]) * double(v[p]);
     for (const auto& c : set.affine)
@@ -94,7 +84,7 @@ FailedParticle fastest_particle(const State<Real>& state, std::string what, std:
 template <class Real>
 std::optional<FailedParticle> spoilt_particle(const State<Real>& state) {
   std::optional<FailedParticle> found;
-  visit_particles(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
+  for_each_in_blocks(state, [&](const ParticleSet<Real>& set, std::size_t occupied, std::size_t p) {
     if (found) return;
     bool finite = true;
     set.for_each_real([&](const AlignedArray<Real>& channel) { finite = finite && std::isfinite(channel[p]); });

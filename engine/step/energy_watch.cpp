@@ -78,7 +78,8 @@ void EnergyWatch<Real>::sum_block(const State<Real>& state, std::size_t occupied
       double sum = 0.0;
       for (std::size_t p = first; p < last; ++p) sum += double(c[p]) * double(c[p]);
       affine += sum;
-      for (std::size_t p = first; begun > 0.0 && p < last; ++p) {
+      if (!(begun > 0.0)) continue;
+      for (std::size_t p = first; p < last; ++p) {
         if (set.id[p] >= next_id_) newcomers += inertia * double(c[p]) * double(c[p]);
       }
     }

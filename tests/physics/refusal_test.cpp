@@ -1,6 +1,7 @@
 // Repose tests: a step that would break is refused before it writes to any particle, and says for whose sake.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "engine/compiler/compiler.h"
@@ -36,6 +37,20 @@ TEST(Refusal, ForceThatThrowsOverCells_IsErrorOfPhysics) {
   EXPECT_EQ(simulation->hash(), before);
   EXPECT_EQ(simulation->counters().step, 0);
   EXPECT_EQ(simulation->counters().time, 0.0);
+}
+
+// Its waves cross less than half a cell in a second, in which it falls over five.
+TEST(Refusal, SoftMatterFromRest_FallsInStepsThatGravityAllows) {
+  const auto simulation = simulate(
+      scene_of(kHurled, {"force_fields=[]", "gravity.acceleration=[0,-9.81,0]", "grid.spacing=1",
+                         "time.max_step=1", "materials.rubber.youngs_modulus=100",
+                         R"(bodies.block.shape={"type": "box", "lower": [0, 9, 0], "upper": [8, 17, 8]})"}),
+      2);
+  const auto step = simulation->step();
+  ASSERT_TRUE(step) << step.error().text();
+  EXPECT_EQ(step->redone, 0);
+  EXPECT_EQ(step->limit, Limit::kVelocity);
+  EXPECT_NEAR(step->dt, std::sqrt(0.6 / 9.81), 1e-12);
 }
 
 TEST(Refusal, ModerateForce_IsAccepted) {
