@@ -160,11 +160,10 @@ int ContactSet<Real>::release(std::size_t block) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
-    for (std::size_t k = 0; k < node.holds.size(); ++k) {
-      auto& [hold, active, push] = node.holds[k];
-      // One that holds nothing of its own stays: let go, it would be passed and taken up again, for ever.
-      if (!node.held.spans(k) || hold.contact != Contact::kSeparating || !(push < Real(0))) continue;
-      active = false;
+    for (Hold<Real>& hold : node.holds) {
+      const bool pulls = hold.active && hold.push < Real(0);
+      if (!pulls || hold.constraint.contact != Contact::kSeparating || node.held.faced(hold)) continue;
+      hold.active = false;
       ++changed;
     }
     if (changed > 0) node.held.span(node.holds);

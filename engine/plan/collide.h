@@ -83,10 +83,8 @@ void Corner<Real>::settle(Real* v) {
 template <class Real>
 bool Corner<Real>::let_go() {
   Hold<Real>* pulls = nullptr;
-  for (std::size_t k = 0; k < holds_.size(); ++k) {
-    Hold<Real>& hold = holds_[k];
-    // One that holds nothing of its own stays: let go, it would be passed and taken up again, for ever.
-    if (!directions_.spans(k) || hold.constraint.contact != Contact::kSeparating) continue;
+  for (Hold<Real>& hold : holds_) {
+    if (!hold.active || hold.constraint.contact != Contact::kSeparating || directions_.faced(hold)) continue;
     if (hold.push < (pulls == nullptr ? Real(0) : pulls->push)) pulls = &hold;
   }
   if (pulls != nullptr) pulls->active = false;

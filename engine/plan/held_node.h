@@ -29,8 +29,9 @@ class HeldDirections {
   /// it prescribes while those before it are met.
   void span(ConstHolds holds);
   int rank() const { return rank_; }
-  /// Whether hold k holds something of its own, which others that are alike, or opposite, do not.
-  bool spans(std::size_t k) const { return std::find(hold_, hold_ + rank_, k) != hold_ + rank_; }
+  /// Whether a hold faces one that spans what is held: it bears nothing then, and let go it would be passed and
+  /// taken up again, for ever.
+  bool faced(const Hold<Real>& hold) const;
 
   /// A velocity, brought to what the holds prescribe.
   template <class At>
@@ -107,6 +108,15 @@ typename HeldDirections<Real>::Vector3 HeldDirections<Real>::along_walls(Vector3
   if (rank_ == 3) return Vector3::Zero();
   for (int k = 0; k < rank_; ++k) x -= axis_[k].dot(x) * axis_[k];
   return x;
+}
+
+template <class Real>
+bool HeldDirections<Real>::faced(const Hold<Real>& hold) const {
+  const auto faces = [&](const Vector3& normal) {
+    const Real along = normal.dot(normal_of(hold.constraint));
+    return along < Real(0) && Real(1) - along * along < Real(kApart * kApart);
+  };
+  return std::any_of(normal_, normal_ + rank_, faces);
 }
 
 template <class Real>
