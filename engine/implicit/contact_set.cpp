@@ -135,19 +135,44 @@ void ContactSet<Real>::release_all(std::size_t block) {
 }
 
 template <class Real>
-int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
+Real ContactSet<Real>::passed(const Constraint<Real>& hold, const Vector3& v) {
   constexpr Real kRounding = Real(1e-6);
+  const Real short_of = hold.bound - normal_of(hold).dot(v);
+  return short_of > kRounding * (std::abs(hold.bound) + v.norm()) ? short_of : Real(0);
+}
+
+template <class Real>
+bool ContactSet<Real>::lets_go(const Node& node, const Hold<Real>& hold) {
+  const bool pulls = hold.active && hold.push < Real(0);
+  return pulls && hold.constraint.contact == Contact::kSeparating && !node.held.faced(hold);
+}
+
+template <class Real>
+double ContactSet<Real>::unsettled(std::size_t block, const Real* nodes, const Real* v) const {
+  double sum = 0.0;
+  for (const Node& node : nodes_[block]) {
+    const auto mass = static_cast<double>(nodes[node.index * kNodeValues]);
+    if (!(mass > 0.0)) continue;
+    for (const Hold<Real>& hold : node.holds) {
+      const auto push = static_cast<double>(lets_go(node, hold) ? hold.push : Real(0));
+      const auto along =
+          hold.active ? 0.0 : static_cast<double>(passed(hold.constraint, at_node(v, node.index)));
+      sum += push * push / mass + mass * along * along;
+    }
+  }
+  return sum;
+}
+
+template <class Real>
+int ContactSet<Real>::take_up(std::size_t block, const Real* v) {
   int changes = 0;
   for (Node& node : nodes_[block]) {
     int changed = 0;
     for (auto& [hold, active, push] : node.holds) {
-      if (active) continue;
-      const Real along = normal_of(hold).dot(at_node(v, node.index));
-      if (along < hold.bound - kRounding * (std::abs(hold.bound) + at_node(v, node.index).norm())) {
-        active = true;
-        push = Real(0);
-        ++changed;
-      }
+      if (active || !(passed(hold, at_node(v, node.index)) > Real(0))) continue;
+      active = true;
+      push = Real(0);
+      ++changed;
     }
     if (changed > 0) node.held.span(node.holds);
     changes += changed;
@@ -161,8 +186,7 @@ int ContactSet<Real>::release(std::size_t block) {
   for (Node& node : nodes_[block]) {
     int changed = 0;
     for (Hold<Real>& hold : node.holds) {
-      const bool pulls = hold.active && hold.push < Real(0);
-      if (!pulls || hold.constraint.contact != Contact::kSeparating || node.held.faced(hold)) continue;
+      if (!lets_go(node, hold)) continue;
       hold.active = false;
       ++changed;
     }

@@ -59,6 +59,9 @@ class ContactSet {
     for (const AtNode& rub : tangents_[block].rub) visit(rub.node, rub.matrix);
   }
 
+  /// What take_up() and release() would mend, in the norm of the inverse mass, squared: impulses that pull, and
+  /// those that would keep nodes from passing. `nodes` have the masses.
+  double unsettled(std::size_t block, const Real* nodes, const Real* v) const;
   /// Lets all contacts go that only push.
   void release_all(std::size_t block);
   /// Takes up contacts that v passes. Returns how many changed.
@@ -103,6 +106,9 @@ class ContactSet {
     std::vector<AtNode> rub, inverse;  // D, and Q (m + D)^-1 m
   };
   static Vector3 slip(const Node& node, const Constraint<Real>& hold, const Real* v);
+  /// How much v, that of the node, passes a wall; nothing where that is rounding.
+  static Real passed(const Constraint<Real>& hold, const Vector3& v);
+  static bool lets_go(const Node& node, const Hold<Real>& hold);
 
   /// The solids at a node, as collide() asks for them.
   struct AroundNode {

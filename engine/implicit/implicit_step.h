@@ -41,7 +41,7 @@ class ImplicitStep {
   double scale() const { return balance_.scale(); }
   bool has_energy() const;
   double slope(const Vector& step) { return dot(system_, balance_.residual(), step); }
-  bool change_contacts(Vector& v);
+  bool change_contacts(Vector& v, double least);
   bool models() const { return balance_.models(); }
   bool tightens() const { return !balance_.fades(); }
   double linearize(const Vector& v, bool near) { return balance_.linearize(v, near); }

@@ -11,7 +11,9 @@
 //   double scale()                                     what |r| is measured against, after evaluate
 //   bool has_energy()                                  whether r is the gradient of an energy
 //   double slope(const Vector& step)                   r . step, r as evaluated last: of the energy along step
-//   bool change_contacts(Vector& v)                    one-sided constraints taken up or let go; v obeys
+//   bool change_contacts(Vector& v, double least)      one-sided constraints taken up or let go where what they
+//                                                      get wrong is more than `least`, in the norm of r; v
+//                                                      obeys
 //   bool models()                                      whether it knows a place near v to be linearised at
 //   bool tightens()                                    whether tight solves help in hard steps: not where
 //                                                      tangents are indefinite
@@ -52,14 +54,15 @@ class Newton {
       : problem_(problem), v_(v), step_(step), trial_(trial), stop_(stop) {}
 
   /// Solves r(v) = 0 from the v that is given, which was evaluated last, to `norm`; a v that is handed back as
-  /// solved was evaluated last, too. Contacts may change during the first half of the iterations, so that they
-  /// cannot keep the method going round for ever.
+  /// solved was evaluated last, too. Contacts may change in every one of the first half of the iterations.
+  /// Later they could keep the method going round for ever, and change only where all else is solved and they
+  /// are not.
   NewtonReport solve(std::optional<double> norm) {
     if (!norm) return end(NewtonEnd::kUndefined);
     near_ = problem_.models();
     report_.first = report_.last = *norm;
     // A guess may be right but for contacts that pull.
-    if (report_.last <= tolerance() && !change_contacts()) return end(NewtonEnd::kUndefined);
+    if (report_.last <= tolerance() && !change_contacts(0.0)) return end(NewtonEnd::kUndefined);
     while (report_.history.push_back(report_.last), report_.last > tolerance()) {
       if (interrupted()) return end(NewtonEnd::kInterrupted);
       if (report_.iterations == stop_.iterations) return end(NewtonEnd::kIterations);
@@ -70,7 +73,7 @@ class Newton {
       if (interrupted()) return end(NewtonEnd::kInterrupted);
       if (failed && !near_) return end(*failed);
       if (failed) problem_.evaluate(v_);  // the last was a length that was refused
-      if (!failed && early() && !change_contacts()) return end(NewtonEnd::kUndefined);
+      if (!failed && !settle_contacts()) return end(NewtonEnd::kUndefined);
       near_ = near_ && !failed && early();
     }
     return end(NewtonEnd::kConverged);
@@ -97,9 +100,13 @@ class Newton {
 
   double tolerance() const { return stop_.tolerance * problem_.scale(); }
 
-  /// Returns whether the residual is defined still.
-  bool change_contacts() {
-    if (!problem_.change_contacts(v_)) return true;
+  /// Both return whether the residual is defined still.
+  bool settle_contacts() {
+    if (early()) return change_contacts(0.0);
+    return report_.last > tolerance() || change_contacts(tolerance());
+  }
+  bool change_contacts(double least) {
+    if (!problem_.change_contacts(v_, least)) return true;
     ++report_.contact_changes;
     const std::optional<double> norm = problem_.evaluate(v_);
     report_.last = norm.value_or(std::numeric_limits<double>::infinity());

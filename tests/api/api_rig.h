@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "api/include/repose/repose.hpp"
+#include "tests/temporary_folder.h"
 
 namespace repose {
 
@@ -27,20 +26,5 @@ inline Engine box_engine(int threads = 1, const std::string& more = "") {
   options.threads = threads;
   return Engine(Scene::from_text(box_scene(more)), options);
 }
-
-/// A folder that goes with the test.
-class TestFolder {
- public:
-  TestFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "repose-api-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  std::string path(const std::string& name = "") const { return (path_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace repose

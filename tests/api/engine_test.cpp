@@ -75,7 +75,7 @@ TEST(ApiEngine, StepsSecondsAndFrames_GoAlongOneLine) {
 }
 
 TEST(ApiEngine, StateInMemoryAndInAFile_GoesOnWithTheSameBits) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   Engine engine = box_engine();
   engine.advance_step();
   const std::vector<std::byte> bytes = engine.save();

@@ -61,7 +61,7 @@ std::string piston_scene(const std::string& piston) {
   return scene;
 }
 
-Engine piston_engine(const TestFolder& folder, bool led, double rate = 48.0) {
+Engine piston_engine(const TemporaryFolder& folder, bool led, double rate = 48.0) {
   const std::string sequence = R"("file": "p.####.obj"}, "frames": {"count": 6, "rate": 48})";
   Scene scene = Scene::from_text(piston_scene(led ? R"("file": "p.0001.obj"})" : sequence), folder.path());
   if (led) scene.lead_mesh("piston", rate);
@@ -69,7 +69,7 @@ Engine piston_engine(const TestFolder& folder, bool led, double rate = 48.0) {
 }
 
 TEST(ApiHost, VerticesFrameByFrame_AreTheSequenceOfFilesToTheBit) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   for (int k = 0; k < 6; ++k) folder.write("p.000" + std::to_string(k + 1) + ".obj", Piston(k).obj());
   Engine files = piston_engine(folder, false), host = piston_engine(folder, true),
          rests = piston_engine(folder, true);
@@ -85,7 +85,7 @@ TEST(ApiHost, VerticesFrameByFrame_AreTheSequenceOfFilesToTheBit) {
 }
 
 TEST(ApiHost, VerticesOfOtherTriangles_AndAfterALoadedState_AreTaken) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   folder.write("p.0001.obj", Piston(0).obj());
   Engine host = piston_engine(folder, true);
   Piston other(1);
@@ -110,7 +110,7 @@ TEST(ApiHost, VerticesOfOtherTriangles_AndAfterALoadedState_AreTaken) {
 }
 
 TEST(ApiHost, VerticesBetweenTwoStretches_AreRefusedAndSubstepsAreStretches) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   folder.write("p.0001.obj", Piston(0).obj());
   Engine host = piston_engine(folder, true, 4 * 48.0);
   for (int part = 0; part < 8; ++part) {

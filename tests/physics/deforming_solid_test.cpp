@@ -12,7 +12,8 @@ namespace repose {
 namespace {
 
 /// Sand in an endless trough; `piston` says how the solid that comes in from the left moves, at 0.5 m/s.
-Scene trough(const Folder& folder, const std::string& piston, const std::vector<std::string>& overrides = {}) {
+Scene trough(const TemporaryFolder& folder, const std::string& piston,
+             const std::vector<std::string>& overrides = {}) {
   Scene scene = scene_of(R"json({"repose": 1, "name": "trough", "grid": {"spacing": 0.01},
     "materials": {"sand": {"type": "drucker_prager"}},
     "bodies": [{"name": "sand", "material": "sand",
@@ -33,7 +34,7 @@ constexpr const char* kFrames = R"("file": "p.####.obj"}, "frames": {"count": 13
 constexpr const char* kRigid =
     R"("file": "p.obj"}, "motion": {"keys": [{"time": 0}, {"time": 0.5, "translation": [0.25, 0, 0]}]})";
 
-void write_pistons(const Folder& folder, double speed = 0.5) {
+void write_pistons(const TemporaryFolder& folder, double speed = 0.5) {
   const TriangleMesh piston = box_of_squares({-0.1, -0.1, -0.1}, {0, 0.3, 0.2}, {2, 4, 3});
   folder.write("p.obj", obj_of(piston));
   for (int k = 0; k < 13; ++k) write_frame(folder, "p", k + 1, moved(piston, {speed * k / 24.0, 0, 0}));
@@ -56,7 +57,7 @@ std::array<double, 2> apart(const Scene& a, const Scene& b) {
 }
 
 TEST(DeformingSolid, SequenceOfATranslation_PushesAsTheRigidSolid) {
-  const Folder folder, slower;
+  const TemporaryFolder folder, slower;
   write_pistons(folder);
   write_pistons(slower, 0.49);
   const Scene rigid = trough(folder, kRigid);
@@ -78,7 +79,7 @@ Vec3 plate_velocity(const Vec3& x) {
 }
 
 std::array<double, 2> plate_errors(bool one_topology) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const TriangleMesh plate = box_of_squares({0, -0.08, -0.1}, {kLength, 0, 0.26}, {60, 1, 2});
   for (int k = 0; k < 4; ++k) {
     TriangleMesh mesh = plate;
@@ -128,7 +129,7 @@ TEST(DeformingSolid, PlateOfOtherTriangles_GivesItsNormalVelocityAlone) {
 }
 
 TEST(DeformingSolid, ThreadsAndACheckpoint_SameBits) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_pistons(folder);
   for (int k = 3; k < 13; k += 4) {  // some frames of other triangles
     write_frame(
@@ -153,7 +154,7 @@ TEST(DeformingSolid, ThreadsAndACheckpoint_SameBits) {
 }
 
 TEST(DeformingSolid, FastFrames_BoundTheStep) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_pistons(folder, 2.4);
   const auto simulation = simulate(
       trough(folder, kFrames, {"time.sound=1", "time.isolated=1", "materials.sand.youngs_modulus=100"}));
@@ -165,7 +166,7 @@ TEST(DeformingSolid, FastFrames_BoundTheStep) {
 }
 
 TEST(DeformingSolid, SleepersBeforeIt_WakeWhenItSetsOut) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_pistons(folder);
   const auto simulation =
       simulate(trough(folder, R"("file": "p.####.obj"}, "frames": {"count": 13, "rate": 24, "start": 0.3})",
@@ -179,7 +180,7 @@ TEST(DeformingSolid, SleepersBeforeIt_WakeWhenItSetsOut) {
   EXPECT_GT(simulation->diagnose().momentum[0] / simulation->diagnose().mass, 0.05);
 }
 
-double force_on_piston(const Folder& folder, const std::string& piston) {
+double force_on_piston(const TemporaryFolder& folder, const std::string& piston) {
   const auto simulation =
       simulate(trough(folder, piston, {R"(probes=[{"name": "w", "type": "force", "collider": "piston"}])"}));
   EXPECT_TRUE(run_until(*simulation, 0.2));
@@ -190,7 +191,7 @@ double force_on_piston(const Folder& folder, const std::string& piston) {
 }
 
 TEST(DeformingSolid, ForceOnIt_IsThatOnTheRigidSolid) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_pistons(folder);
   const double rigid = force_on_piston(folder, kRigid), force = force_on_piston(folder, kFrames);
   report("force_on_deforming_piston", force, "N");

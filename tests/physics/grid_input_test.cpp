@@ -9,7 +9,7 @@ namespace repose {
 namespace {
 
 /// How far a heap 0.4 m wide has spread to the left and to the right, cells.
-std::array<double, 2> spread(const Folder& folder, const std::string& variation) {
+std::array<double, 2> spread(const TemporaryFolder& folder, const std::string& variation) {
   Scene scene = scene_of(R"json({"repose": 1, "name": "patches", "grid": {"spacing": 0.01, "plane_strain": "z"},
     "materials": {"sand": {"type": "drucker_prager", "friction_angle": 35)json" +
                          variation + R"json(}},
@@ -24,7 +24,7 @@ std::array<double, 2> spread(const Folder& folder, const std::string& variation)
 }
 
 TEST(GridInput, SandWithAHalfOfNoFriction_SlumpsThereOnly) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_grids((folder.path() / "patches.vdb").string(),
               {{"friction",
                 TestGrid::Kind::kFloat,

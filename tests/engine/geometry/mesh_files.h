@@ -1,38 +1,15 @@
-// Repose tests: folders that go with the test, and meshes written into them.
+// Repose tests: meshes, written into folders of the test.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <random>
 #include <string>
 
 #include "engine/geometry/shape.h"
+#include "tests/temporary_folder.h"
 
 namespace repose {
-
-/// A fresh folder that goes with the test.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("repose_test_" + std::to_string(std::random_device{}()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The mesh as OBJ, with all digits.
 inline std::string obj_of(const TriangleMesh& mesh) {
@@ -50,7 +27,8 @@ inline std::string obj_of(const TriangleMesh& mesh) {
 }
 
 /// NAME.0001.obj and so on.
-inline void write_frame(const Folder& folder, const std::string& name, int number, const TriangleMesh& mesh) {
+inline void write_frame(const TemporaryFolder& folder, const std::string& name, int number,
+                        const TriangleMesh& mesh) {
   char digits[16];
   std::snprintf(digits, sizeof digits, ".%04d", number);
   folder.write(name + digits + ".obj", obj_of(mesh));

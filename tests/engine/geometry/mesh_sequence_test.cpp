@@ -31,7 +31,8 @@ SequenceDescription frames(std::int64_t count, bool repeat = false, double start
   return description;
 }
 
-std::shared_ptr<const MeshSequence> sequence(const Folder& folder, const SequenceDescription& description) {
+std::shared_ptr<const MeshSequence> sequence(const TemporaryFolder& folder,
+                                             const SequenceDescription& description) {
   auto made = MeshSequence::make(mesh_shape(), description, folder.path().string(), kSpacing, false);
   EXPECT_TRUE(made) << made.error().text();
   return made ? *made : nullptr;
@@ -49,7 +50,7 @@ TriangleMesh twisted() {
 }
 
 TEST(MeshSequence, BetweenFrames_IsTheInterpolatedMesh) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_frame(folder, "m", 1, box());
   write_frame(folder, "m", 2, twisted());
   const auto shapes = sequence(folder, frames(2));
@@ -76,7 +77,7 @@ TEST(MeshSequence, BetweenFrames_IsTheInterpolatedMesh) {
 }
 
 TEST(MeshSequence, PlateFasterThanItIsThick_DoesNotVanish) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const TriangleMesh plate = box_of_squares({0, 0, 0}, {0.1, 0.6, 0.6}, {1, 3, 3});
   write_frame(folder, "m", 1, plate);
   write_frame(folder, "m", 2, moved(plate, {1, 0, 0}));
@@ -90,7 +91,7 @@ TEST(MeshSequence, PlateFasterThanItIsThick_DoesNotVanish) {
 }
 
 TEST(MeshSequence, OtherTriangles_LevelSetsAreInterpolated) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_frame(folder, "m", 1, box());
   write_frame(folder, "m", 2, moved(box_of_squares({0, 0, 0}, {0.4, 0.5, 0.6}, {3, 1, 2}), {0.05, 0, 0}));
   const auto shapes = sequence(folder, frames(2));
@@ -105,7 +106,7 @@ TEST(MeshSequence, OtherTriangles_LevelSetsAreInterpolated) {
 }
 
 TEST(MeshSequence, Time_RestsOutsideAndRepeatsWhereAsked) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (int k = 0; k < 3; ++k) write_frame(folder, "m", k + 1, box({0.1 * k * (3 - k), 0, 0}));  // 0, 0.2, 0.2
   const auto side = [&](const std::shared_ptr<const MeshSequence>& shapes, double time) {
     return shapes->at(time)->bounds().upper[0] - 0.4;
@@ -131,7 +132,7 @@ TEST(MeshSequence, Time_RestsOutsideAndRepeatsWhereAsked) {
 }
 
 TEST(MeshSequence, Windows_HoldTheirWay) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (int k = 0; k < 3; ++k) write_frame(folder, "m", k + 1, box({0.35 * k, 0, 0}));
   const auto shapes = sequence(folder, frames(3));
   for (int k = 0; k <= 300; ++k) {
@@ -150,7 +151,7 @@ TEST(MeshSequence, FrameFile_FillsOneRowOfSigns) {
 }
 
 TEST(MeshSequence, BadFiles_AreRefusedByName) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_frame(folder, "m", 1, box());
   TriangleMesh open = box();
   open.triangles.pop_back();

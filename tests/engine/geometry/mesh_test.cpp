@@ -138,7 +138,7 @@ TEST(Mesh, ShapesOfOneFile_ShareIt) {
 }
 
 TEST(Mesh, Paths_StayInTheFolder) {
-  const Folder folder;
+  const TemporaryFolder folder;
   fs::create_directories(folder.path() / "scene/sub");
   folder.write("outside.obj", kBoxObj);
   folder.write("scene/sub/box.obj", kBoxObj);
@@ -161,7 +161,7 @@ TEST(Mesh, Paths_StayInTheFolder) {
 }
 
 TEST(Mesh, MissingFile_NamesThePathTried) {
-  const Folder folder;
+  const TemporaryFolder folder;
   fs::create_directories(folder.path() / "directory.obj");
   for (const std::string file : {"none.obj", "directory.obj"}) {
     const auto shape = load(folder.path(), file);
@@ -172,7 +172,7 @@ TEST(Mesh, MissingFile_NamesThePathTried) {
 }
 
 TEST(Mesh, OtherFormats_AreRefused) {
-  const Folder folder;
+  const TemporaryFolder folder;
   folder.write("box.stl", kBoxObj);
   const auto shape = load(folder.path(), "box.stl");
   ASSERT_FALSE(shape);
@@ -180,7 +180,7 @@ TEST(Mesh, OtherFormats_AreRefused) {
 }
 
 TEST(Mesh, TooFineForMemory_IsRefused) {
-  const Folder folder;
+  const TemporaryFolder folder;
   folder.write("box.obj", kBoxObj);
   const auto shape = load(folder.path(), "box.obj", 1e-5);
   ASSERT_FALSE(shape);
@@ -188,7 +188,7 @@ TEST(Mesh, TooFineForMemory_IsRefused) {
 }
 
 TEST(Mesh, BoxLevelSet_IsTheBoxNearAndFar) {
-  const Folder folder;
+  const TemporaryFolder folder;
   folder.write("box.obj", kBoxObj);
   const auto shape = load(folder.path(), "box.obj", 0.1);
   ASSERT_TRUE(shape) << shape.error().text();
@@ -201,7 +201,7 @@ TEST(Mesh, BoxLevelSet_IsTheBoxNearAndFar) {
 }
 
 TEST(Mesh, ScaleAndPlacement_Apply) {
-  const Folder folder;
+  const TemporaryFolder folder;
   folder.write("box.obj", kBoxObj);
   ShapeDescription d;
   d.type = ShapeDescription::Type::kMesh;

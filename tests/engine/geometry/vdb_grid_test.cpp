@@ -36,7 +36,7 @@ class VdbGrid : public ::testing::Test {
     write_grids((folder_.path() / "g.vdb").string(), grids);
   }
   std::string path() const { return folder_.path().string(); }
-  Folder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(VdbGrid, LinearField_IsSampledExactly) {

@@ -49,7 +49,9 @@ struct DenseProblem {
   double scale() const { return against; }
   bool has_energy() const { return energy; }
   double slope(const Vector& step) const { return r.dot(step); }
-  bool change_contacts(Vector& v) {
+  bool change_contacts(Vector& v, double least) {
+    const double wrong = held ? std::max(0.0, -(*residual(v))[0]) : std::max(0.0, lower - v[0]);
+    if (wrong <= least) return false;
     const bool hold = held ? (*residual(v))[0] >= 0.0 : v[0] < lower;
     if (hold == held) return false;
     held = hold;
@@ -264,6 +266,25 @@ TEST(Newton, WithAGuessThatIsHeldByAContactThatPulls_LetsItGo) {
   EXPECT_EQ(run.report.end, NewtonEnd::kConverged);
   EXPECT_EQ(run.report.contact_changes, 1);
   EXPECT_NEAR(run.v[0], 2.0, 1e-12);
+}
+
+// Pushed to -1; where it would pass its bound in the second half of the iterations, with all else solved.
+TEST(Newton, WithAContactThatIsWrongAtTheEnd_GoesOnUnlessItIsWithinTheTolerance) {
+  DenseProblem problem;
+  problem.residual = [](const Eigen::VectorXd& v) { return vector1(v[0] + 1.0); };
+  problem.derivative = [](const Eigen::VectorXd&) { return matrix1(1.0); };
+  problem.left_over = 0.1;  // -0.8, then -0.98
+  problem.lower = -0.9;
+  const Outcome wrong = solve_from(problem, vector1(1.0), 0.03, 3);
+  EXPECT_EQ(wrong.report.end, NewtonEnd::kConverged);
+  EXPECT_EQ(wrong.report.contact_changes, 1);
+  EXPECT_DOUBLE_EQ(wrong.v[0], -0.9);
+  problem.held = false;
+  problem.lower = -0.96;
+  const Outcome little = solve_from(problem, vector1(1.0), 0.03, 3);
+  EXPECT_EQ(little.report.end, NewtonEnd::kConverged);
+  EXPECT_EQ(little.report.contact_changes, 0);
+  EXPECT_NEAR(little.v[0], -0.98, 1e-12);
 }
 
 // The cap, a solver that gives up, and a residual that no length lowers are told apart.
