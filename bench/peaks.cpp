@@ -1,9 +1,10 @@
 // Repose: the loops of peaks.h, once per instruction set, in the vocabulary of the kernels.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/peaks.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "bench/peak_loops.h"
 #include "bench/peaks.h"

@@ -3,6 +3,10 @@
 // they would lengthen the build for machines that render farms no longer have.
 #pragma once
 
+#ifdef HIGHWAY_HWY_DETECT_TARGETS_H_
+#error "kernels/base/targets.h stands before Highway's headers, in a block of its own: they ask once"
+#endif
+
 #ifdef REPOSE_FEWER_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
 #else

@@ -1,9 +1,10 @@
 // Repose: the cut of tension before the return map.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/effect/cohesion.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/eigen_sym3-inl.h"
 #include "kernels/base/matrix_arrays-inl.h"

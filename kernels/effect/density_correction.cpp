@@ -1,9 +1,10 @@
 // Repose: the strain of sand follows the density at which its particles lie, where that is higher.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/effect/density_correction.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/matrix_arrays-inl.h"
 #include "kernels/effect/density_correction.h"

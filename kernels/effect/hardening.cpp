@@ -1,9 +1,10 @@
 // Repose: friction that hardens with plastic shear: the yield slope of each particle before the return map.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/effect/hardening.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/elementary-inl.h"
 #include "kernels/effect/hardening.h"

@@ -1,9 +1,10 @@
 // Repose: friction that rises with the rate of shear: the yield slope of each particle before the return map.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/effect/rate_friction.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/matrix_arrays-inl.h"
 #include "kernels/effect/rate_friction.h"

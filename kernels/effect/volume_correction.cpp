@@ -1,9 +1,10 @@
 // Repose: the two halves of the volume correction, about the return map.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/effect/volume_correction.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/simd-inl.h"
 #include "kernels/effect/volume_correction.h"

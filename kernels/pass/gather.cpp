@@ -4,9 +4,10 @@
 // that simd.h writes down.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/gather.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/simd-inl.h"
 #include "kernels/base/small_matrix-inl.h"

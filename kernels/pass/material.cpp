@@ -2,9 +2,10 @@
 // effect may act between them; all work on the strain channel in place, a pack of particles at a time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/material.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/matrix_arrays-inl.h"
 #include "kernels/material/materials.h"

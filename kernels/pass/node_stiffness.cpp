@@ -5,9 +5,10 @@
 // A preconditioner must be symmetric: A is replaced by its symmetric part.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/node_stiffness.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/layout/stencil.h"
 #include "kernels/material/response-inl.h"

@@ -1,9 +1,10 @@
 // Repose: passes over nodes: between an arena and the blocks it covers, and over the nodes of one block.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/nodes.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include <bit>
 #include <limits>

@@ -5,9 +5,10 @@
 // Where particles keep their velocity, a second arena receives the momentum without dt f_i in the same sweep.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/scatter.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/simd-inl.h"
 #include "kernels/layout/stencil.h"

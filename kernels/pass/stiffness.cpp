@@ -7,9 +7,10 @@
 // (supplement, algorithm 2): no tensor with 81 entries is ever built.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/stiffness.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/eigen_sym3-inl.h"
 #include "kernels/base/matrix_arrays-inl.h"

@@ -1,9 +1,10 @@
 // Repose: what Krylov solvers do with a block of node vectors, four values a node.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/pass/vectors.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/simd-inl.h"
 #include "kernels/pass/fill.h"
