@@ -1,11 +1,12 @@
-# What `cmake --install` brings where, in three components: runtime (the shared library), development (headers, the
-# static library, CMake package, pkg-config) and tools (the command with its scenes); and the Debian packages of them
-# that `cpack` makes.
+# What `cmake --install` brings where, in three components: runtime (the shared library, and the program that reads
+# VDB files for it), development (headers, the static library, CMake package, pkg-config) and tools (the command with
+# its scenes); and the Debian packages of them that `cpack` makes.
 include(CMakePackageConfigHelpers)
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/repose")
 install(TARGETS repose_shared EXPORT repose-targets
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime NAMELINK_COMPONENT development)
+install(TARGETS repose_vdb_reader RUNTIME DESTINATION "${CMAKE_INSTALL_LIBEXECDIR}/repose" COMPONENT runtime)
 install(TARGETS repose_static EXPORT repose-static-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/api/include/repose" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
@@ -47,7 +48,8 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/debian/triggers")
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "sand by the Material Point Method, shared library
 Repose simulates sand, and elastic bodies that meet it, on sparse blocks.
-This package holds the library that programs embed.")
+This package holds the library that programs embed, and the program that
+reads VDB files for it.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librepose-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)

@@ -181,6 +181,7 @@ Result<Compilation<Real>> begin(const Scene& scene, const CompileOptions& option
   }
   auto around = surroundings_of(scene, options.allow_outside_paths);
   if (!around) return around.error();
+  around->vdb_reader = options.vdb_reader;
   compiled.solids = around->solids;
   Compilation<Real> compilation{scene, options, std::move(*around)};
   if (auto made = make_effects(compilation); !made) return made.error();

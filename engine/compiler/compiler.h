@@ -13,6 +13,7 @@
 #include "engine/plan/step_plan.h"
 #include "engine/scene/scene.h"
 #include "engine/state/state.h"
+#include "engine/vdb/vdb_reader.h"
 
 namespace repose {
 
@@ -24,6 +25,7 @@ struct CompileOptions {
   bool log_contacts = false;
   /// Of implicit steps, by which time.integrator `auto` is decided; none: the committed ones.
   std::span<const ImplicitCost> implicit_costs = {};
+  VdbReader vdb_reader = {};  ///< of grids that the scene names
 };
 
 template <class Real>

@@ -149,7 +149,7 @@ class WindsAndAccelerations : public Effect<Real> {
       ReadyField ready{field, nullptr, nullptr};
       const std::string key = "force_fields." + field.name;
       if (field.type == ForceField::Type::kAccelerationGrid || field.type == ForceField::Type::kWindGrid) {
-        auto values = VectorGrid::read(field.grid, surroundings.folder, surroundings.allow_outside_paths);
+        auto values = VectorGrid::read(field.grid, surroundings.grid_files());
         if (!values) return Error{values.error().kind, values.error().text(), surroundings.where(key)};
         ready.values = *values;
       }

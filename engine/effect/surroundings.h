@@ -9,6 +9,7 @@
 #include "engine/effect/description.h"
 #include "engine/effect/solid.h"
 #include "engine/geometry/periodic_shape.h"
+#include "engine/geometry/vdb_grid.h"
 
 namespace repose {
 
@@ -20,6 +21,7 @@ struct Surroundings {
   Index3 origin_cells{0, 0, 0};  ///< where the scene's origin lies in the lattice
   std::string folder;            ///< where relative paths start
   bool allow_outside_paths = false;
+  VdbReader vdb_reader = {};
   std::vector<SetDescription> bodies;  ///< in the scene's order
   Places places;
   std::shared_ptr<KnownMeshes> meshes = std::make_shared<KnownMeshes>();
@@ -30,6 +32,7 @@ struct Surroundings {
   std::vector<Solid> solids;
 
   std::string where(const std::string& key) const { return places.where(key); }
+  GridFiles grid_files() const { return {folder, allow_outside_paths, vdb_reader}; }
 
   /// Builds the shape that stands at a key, with its images where space repeats. Errors: 65, 66, with the key.
   Result<std::shared_ptr<const Shape>> shape(const ShapeDescription& description,

@@ -137,7 +137,7 @@ class PatchesOfSand : public Effect<Real> {
   static Result<void> read(const Surroundings& surroundings, const VdbDescription& grid, const std::string& key,
                            std::shared_ptr<const ScalarGrid>& values) {
     if (!grid.given) return {};
-    const auto made = ScalarGrid::read(grid, surroundings.folder, surroundings.allow_outside_paths);
+    const auto made = ScalarGrid::read(grid, surroundings.grid_files());
     if (!made) return Error{made.error().kind, made.error().text(), surroundings.where(key)};
     if ((*made)->least() < 0.0) {
       return Error{ErrorKind::kBadScene,

@@ -5,7 +5,6 @@
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Filter.h>
 #include <openvdb/tools/LevelSetRebuild.h>
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/parallel.h"
 #include "engine/io/point_layout.h"
@@ -281,43 +279,6 @@ vdb::GridCPtrVec make_fog(const PointCloud& points, const FogOptions& options) {
   return {density, velocity};
 }
 
-// --- Reading
-
-template <class GridType, class Size>
-void find_range(const vdb::GridBase& base, Size size, GridFigures& figures) {
-  const auto* grid = dynamic_cast<const GridType*>(&base);
-  if (grid == nullptr || figures.active == 0) return;
-  figures.least = std::numeric_limits<double>::infinity();
-  figures.most = -figures.least;
-  for (auto value = grid->cbeginValueOn(); value; ++value) {
-    figures.least = std::min(figures.least, double(size(*value)));
-    figures.most = std::max(figures.most, double(size(*value)));
-  }
-}
-
-GridFigures figures_of(const vdb::GridBase& grid) {
-  GridFigures figures;
-  figures.name = grid.getName();
-  figures.type = grid.valueType();
-  figures.points = grid.isType<vdb::points::PointDataGrid>();
-  figures.active = grid.activeVoxelCount();
-  const vdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-  const vdb::Vec3d half(0.5), voxel = grid.voxelSize();
-  const vdb::Vec3d lower = grid.indexToWorld(box.min().asVec3d() - half),
-                   upper = grid.indexToWorld(box.max().asVec3d() + half);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto k = static_cast<std::size_t>(axis);
-    figures.voxel[k] = voxel[axis];
-    figures.lower[k] = lower[axis];
-    figures.upper[k] = upper[axis];
-  }
-  find_range<vdb::FloatGrid>(
-      grid, [](float value) { return value; }, figures);
-  find_range<vdb::Vec3SGrid>(
-      grid, [](const vdb::Vec3s& value) { return value.length(); }, figures);
-  return figures;
-}
-
 }  // namespace
 
 Result<void> write_surface(const PointCloud& points, const SurfaceOptions& options, const std::string& path) {
@@ -336,18 +297,6 @@ Result<void> write_fog(const PointCloud& points, const FogOptions& options, cons
   if (Result<void> good = check_voxels(points, options.voxel, path); !good) return good;
   if (points.mass.size() != points.size()) return out_of_range("needs the mass of each particle", path);
   return write_grids(path, [&] { return make_fog(points, options); });
-}
-
-Result<std::vector<GridFigures>> read_grid_figures(const std::string& path) {
-  Result<std::ifstream> file = open_vdb(path);
-  if (!file) return file.error();
-  return without_exceptions(path, "reading failed", [&]() -> Result<std::vector<GridFigures>> {
-    vdb::initialize();
-    vdb::io::Stream archive(*file, /*delayLoad=*/false);
-    std::vector<GridFigures> figures;
-    for (const vdb::GridBase::Ptr& grid : *archive.getGrids()) figures.push_back(figures_of(*grid));
-    return figures;
-  });
 }
 
 }  // namespace repose

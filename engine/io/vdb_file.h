@@ -1,10 +1,8 @@
-// Repose: what all VDB files of Repose share, without OpenVDB. They go through a stream of ours, since
-// openvdb::io::File returns normally from a full disk. They carry our checksum, and only files that do are
-// parsed, since a flipped bit makes OpenVDB abort, hang or take all memory.
+// Repose: how all VDB files of Repose are written, without OpenVDB. They go through a stream of ours, since
+// openvdb::io::File returns normally from a full disk. They carry our checksum (engine/vdb/checksum.h).
 #pragma once
 
 #include <exception>
-#include <fstream>
 #include <functional>
 #include <new>
 #include <ostream>
@@ -19,10 +17,6 @@ namespace repose {
 /// names the file in errors. Errors: 74 what the disk or OpenVDB says, 78 no memory.
 Result<void> stream_vdb(AtomicFile& file, const std::string& path,
                         const std::function<void(std::ostream&)>& write);
-
-/// A file that carries the checksum of its own bytes, at its beginning. Errors: 66 missing, 74 damaged or not
-/// ours.
-Result<std::ifstream> open_vdb(const std::string& path);
 
 /// Runs `work`, which calls OpenVDB and returns a Result, and turns what it throws into an error.
 template <class Work>

@@ -21,6 +21,7 @@
 #include "engine/state/counters.h"
 #include "engine/step/memory_use.h"
 #include "engine/step/step_report.h"
+#include "engine/vdb/vdb_reader.h"
 #include "kernels/pass/target.h"
 
 namespace repose {
@@ -37,6 +38,7 @@ struct SimulationOptions {
   /// Bytes that the simulation may take, with what writing its frames takes; 0: 85 % of the machine's memory.
   double memory_limit = 0.0;
   bool log_contacts = false;  ///< for contact(); costs a little
+  VdbReader vdb_reader = {};  ///< the program that parses VDB files which the scene names
 };
 
 /// Takes bytes, piece by piece (engine/io/checkpoint.h).
@@ -47,7 +49,7 @@ using StepCallback = std::function<bool(const StepReport&, const Counters&)>;
 
 class Simulation {
  public:
-  /// Errors: 65 bad geometry, 66 a missing mesh, 78 not enough memory.
+  /// Errors: 65 bad geometry, 66 a missing mesh, or no reader of VDB files, 78 not enough memory.
   static Result<std::unique_ptr<Simulation>> create(const Scene& scene, const SimulationOptions& options = {});
   virtual ~Simulation() = default;
 

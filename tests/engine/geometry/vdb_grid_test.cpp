@@ -41,9 +41,9 @@ class VdbGrid : public ::testing::Test {
 
 TEST_F(VdbGrid, LinearField_IsSampledExactly) {
   write({{"a", Kind::kFloat, linear}, {"v", Kind::kVector, vortex}, {"s", Kind::kStaggered, vortex}});
-  const auto scalar = ScalarGrid::read(named("a"), path(), false);
-  const auto vector = VectorGrid::read(named("v"), path(), false);
-  const auto staggered = VectorGrid::read(named("s"), path(), false);
+  const auto scalar = ScalarGrid::read(named("a"), {path()});
+  const auto vector = VectorGrid::read(named("v"), {path()});
+  const auto staggered = VectorGrid::read(named("s"), {path()});
   ASSERT_TRUE(scalar && vector && staggered);
   std::mt19937_64 random(2);
   for (int k = 0; k < 500; ++k) {
@@ -57,7 +57,7 @@ TEST_F(VdbGrid, LinearField_IsSampledExactly) {
 
 TEST_F(VdbGrid, OutsideActiveVoxels_IsTheBackground) {
   write({{"a", Kind::kFloat, linear, 0.1, {0, 0, 0}, {1, 1, 1}, {7, 0, 0}}});
-  const auto scalar = ScalarGrid::read(named("a"), path(), false);
+  const auto scalar = ScalarGrid::read(named("a"), {path()});
   ASSERT_TRUE(scalar);
   EXPECT_EQ((*scalar)->at({1.3, 0.5, 0.5}), 7.0);
   EXPECT_EQ((*scalar)->at({-50, 3, 1e6}), 7.0);
@@ -74,7 +74,7 @@ TEST_F(VdbGrid, WhatCannotBeRead_IsRefusedByFile) {
          {"n", Kind::kFloat, nan},
          {"m", Kind::kVector, nan}});
   folder_.write("text.vdb", "no grid at all");
-  const auto scalar = [&](const VdbDescription& grid) { return ScalarGrid::read(grid, path(), false); };
+  const auto scalar = [&](const VdbDescription& grid) { return ScalarGrid::read(grid, {path()}); };
   const auto expect = [](const auto& result, ErrorKind kind, const std::string& part) {
     ASSERT_FALSE(result) << part;
     EXPECT_EQ(result.error().kind, kind) << result.error().text();
@@ -84,9 +84,9 @@ TEST_F(VdbGrid, WhatCannotBeRead_IsRefusedByFile) {
          "there is no grid \"b\" in the file, which holds \"a\", \"i\"");
   expect(scalar(named("v")), ErrorKind::kBadScene, "grid \"v\" is of type vec3s; it must be of type float");
   expect(scalar(named("i")), ErrorKind::kBadScene, "is of type int32");
-  expect(VectorGrid::read(named("a"), path(), false), ErrorKind::kBadScene, "it must be of type vec3s");
+  expect(VectorGrid::read(named("a"), {path()}), ErrorKind::kBadScene, "it must be of type vec3s");
   expect(scalar(named("n")), ErrorKind::kBadScene, "not finite, at (1, 0, 0) m");
-  expect(VectorGrid::read(named("m"), path(), false), ErrorKind::kBadScene, "not finite");
+  expect(VectorGrid::read(named("m"), {path()}), ErrorKind::kBadScene, "not finite");
   expect(scalar(named("a", "none.vdb")), ErrorKind::kNoInput, "there is no such grid file");
   expect(scalar(named("a", "text.vdb")), ErrorKind::kNoInput, "cannot be read as a VDB file");
   expect(scalar(named("a", "../g.vdb")), ErrorKind::kBadScene, "leaves the scene's folder");
