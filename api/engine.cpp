@@ -123,6 +123,7 @@ repose_status repose_engine_create(repose_scene handle, const repose_engine_opti
     const auto read = made->scene.read();
     if (!read) return fail(read.error());
     chosen.allow_outside_paths = made->scene.options.allow_outside_paths;
+    chosen.vdb_reader = made->scene.vdb_reader;
     auto simulation = Simulation::create(*read, chosen);
     if (!simulation) return fail(simulation.error());
     made->simulation = std::move(*simulation);

@@ -21,6 +21,7 @@ struct SceneText {
   ReadOptions options;
   /// Colliders that the host leads: by poses, or by meshes at a rate above 0.
   std::vector<std::pair<std::string, double>> led;
+  VdbReader vdb_reader = {};
 
   Result<Scene> read() const;
 };

@@ -109,7 +109,8 @@ repose_status repose_scene_from_text(const char* text, size_t length, const char
   return guarded([&]() -> repose_status {
     if (text == nullptr) return null_argument("text");
     if (scene == nullptr) return null_argument("scene");
-    SceneText made{{text, length}, name == nullptr ? "scene" : name, folder == nullptr ? "." : folder, {}, {}};
+    SceneText made{
+        {text, length}, name == nullptr ? "scene" : name, folder == nullptr ? "." : folder, {}, {}, {}};
     if (const repose_status known = read_options(options, made.options); known != REPOSE_OK) return known;
     return give(std::move(made), true, scene);
   });
@@ -118,7 +119,7 @@ repose_status repose_scene_from_text(const char* text, size_t length, const char
 repose_status repose_scene_empty(const char* folder, const repose_scene_options* options, repose_scene* scene) {
   return guarded([&]() -> repose_status {
     if (scene == nullptr) return null_argument("scene");
-    SceneText made{"{}", "scene", folder == nullptr ? "." : folder, {}, {}};
+    SceneText made{"{}", "scene", folder == nullptr ? "." : folder, {}, {}, {}};
     if (const repose_status known = read_options(options, made.options); known != REPOSE_OK) return known;
     return give(std::move(made), false, scene);
   });
@@ -172,6 +173,17 @@ repose_status repose_scene_lead_mesh(repose_scene scene, const char* collider, d
                     }) == REPOSE_OK
              ? lead(scene, collider, rate)
              : repose_error_status();
+}
+
+repose_status repose_scene_vdb_reader(repose_scene handle, const char* program, double memory, double seconds) {
+  return with_scene(handle, [&](SceneText& scene) -> repose_status {
+    if (!(std::isfinite(memory) && memory >= 0.0))
+      return fail(REPOSE_ERROR_ARGUMENT, "must be a number of bytes, or 0", "memory");
+    if (!(std::isfinite(seconds) && seconds >= 0.0))
+      return fail(REPOSE_ERROR_ARGUMENT, "must be a number of seconds, or 0", "seconds");
+    scene.vdb_reader = {program == nullptr ? "" : program, memory, seconds};
+    return REPOSE_OK;
+  });
 }
 
 repose_status repose_scene_json(repose_scene handle, char* buffer, size_t capacity, size_t* length) {

@@ -61,5 +61,14 @@ void define_scene(py::module_& module) {
             return self;
           },
           py::arg("collider"), py::arg("rate"),
-          "Says that deform_collider will give its mesh, rate times a second.");
+          "Says that deform_collider will give its mesh, rate times a second.")
+      .def(
+          "vdb_reader",
+          [](py::object self, const std::string& program, double memory, double seconds) {
+            self.cast<Scene&>().vdb_reader(program, memory, seconds);
+            return self;
+          },
+          py::arg("program") = "", py::arg("memory") = 0.0, py::arg("seconds") = 0.0,
+          "Says which program parses VDB files, and what it may take: bytes and seconds; 0 and '' are "
+          "defaults.");
 }

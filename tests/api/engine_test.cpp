@@ -260,5 +260,37 @@ TEST(ApiEngine, Probes_AreMeasured) {
   EXPECT_LT(list[1].value, 0.0);
 }
 
+/// What an engine of a scene with a wind from g.vdb, which is no VDB file, is refused with.
+std::pair<int, std::string> refusal_of_grid(const TemporaryFolder& folder, const std::string& reader,
+                                            double seconds) {
+  folder.write("g.vdb", "this is no grid");
+  Scene scene = Scene::from_text(
+      box_scene(R"(, "force_fields": [{"name": "f", "type": "wind_grid", "file": "g.vdb", "grid": "v"}])"),
+      folder.path().string());
+  scene.vdb_reader(reader, 0.0, seconds);
+  try {
+    Engine engine(scene);
+  } catch (const Error& error) {
+    return {error.status(), error.what()};
+  }
+  return {REPOSE_OK, ""};
+}
+
+TEST(ApiEngine, VdbFiles_AreReadByTheProgramThatTheHostNames) {
+  const TemporaryFolder folder;
+  const auto nonsense = refusal_of_grid(folder, "", 0.0);
+  EXPECT_EQ(nonsense.first, REPOSE_ERROR_NO_INPUT);
+  EXPECT_NE(nonsense.second.find("g.vdb: cannot be read as a VDB file: "), std::string::npos)
+      << nonsense.second;
+  const auto missing = refusal_of_grid(folder, folder.path("none"), 0.0);
+  EXPECT_EQ(missing.first, REPOSE_ERROR_NO_INPUT);
+  EXPECT_NE(missing.second.find(folder.path("none")), std::string::npos) << missing.second;
+  folder.write("hangs", "#!/bin/sh\nexec sleep 1000\n");
+  std::filesystem::permissions(folder.path("hangs"), std::filesystem::perms::owner_all);
+  const auto hangs = refusal_of_grid(folder, folder.path("hangs"), 0.5);
+  EXPECT_EQ(hangs.first, REPOSE_ERROR_NO_INPUT);
+  EXPECT_NE(hangs.second.find("the reader ran past 0.5 s"), std::string::npos) << hangs.second;
+}
+
 }  // namespace
 }  // namespace repose

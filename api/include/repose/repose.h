@@ -81,6 +81,18 @@ REPOSE_API repose_status repose_scene_lead_pose(repose_scene scene, const char* 
 REPOSE_API repose_status repose_scene_lead_mesh(repose_scene scene, const char* collider, double rate);
 
 /**
+ * Says which program parses the VDB files that the scene names, and what it may take; engines of the scene keep
+ * to it. They are never parsed within the process of the host. `program` is its path; null: what the
+ * environment's REPOSE_VDB_READER names, else repose-vdb-reader as it is installed with the library. `memory`
+ * is in bytes; 0: 512 MB and 128 times the file, at most half of the machine's. `seconds` is wall time, and of
+ * computing; 0: 20 s, and one for each 4 MB of the file. Error: ARGUMENT, a limit that is negative or no
+ * number. repose_engine_create and repose_change answer NO_INPUT where there is no such program, or where it
+ * crashes or runs past its limits, and SCENE for a file that carries a checksum of Repose and is damaged.
+ */
+REPOSE_API repose_status repose_scene_vdb_reader(repose_scene scene, const char* program, double memory,
+                                                 double seconds);
+
+/**
  * The scene as compact JSON, after all that was set and with expressions evaluated. Copies as
  * repose_error_message does; `length` may be null. Error: SCENE.
  */

@@ -64,6 +64,11 @@ class Scene {
     detail::check(repose_scene_lead_mesh(get(), collider.c_str(), rate));
     return *this;
   }
+  /// An empty path and 0 are defaults.
+  Scene& vdb_reader(const std::string& program, double memory = 0.0, double seconds = 0.0) {
+    detail::check(repose_scene_vdb_reader(get(), program.empty() ? nullptr : program.c_str(), memory, seconds));
+    return *this;
+  }
   std::string json() const {
     std::size_t length = 0;
     detail::check(repose_scene_json(get(), nullptr, 0, &length));
