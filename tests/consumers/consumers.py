@@ -67,12 +67,44 @@ def check_errors(program, **more):
         sys.exit(f"a missing scene gave {done.returncode}: {done.stderr}")
 
 
+def windy_scene(folder):
+    """The column in a wind from a VDB file, the fog of a frame of its own."""
+    scene, out = small_scene(folder), os.path.join(folder, "fog")
+    run([args.command, "run", scene, "--out", out, "--frames", "1-1", "--set", "output.fog={}"])
+    shutil.copy(glob.glob(os.path.join(out, "*.fog.0001.vdb"))[0], os.path.join(folder, "wind.vdb"))
+    path = os.path.join(folder, "windy.json")
+    wind = '"force_fields": [{"name": "wind", "type": "wind_grid", "drag": 3, "file": "wind.vdb", "grid": "v"}],'
+    with open(scene) as calm, open(path, "w") as windy:
+        windy.write(calm.read().replace('"camera"', wind + ' "camera"'))
+    return path
+
+
+def check_grids(program, prefix, folder):
+    """VDB files are read by the program that is installed, and by none where that is taken away."""
+    scene = windy_scene(folder)
+    out = os.path.join(folder, "windy")
+    run([args.command, "run", scene, "--out", out, "--frames", f"1-{FRAMES}"])
+    with open(os.path.join(out, "run.json")) as log:
+        expected = json.load(log)["frames"][-1]["hash"]
+    found = hash_of([program, scene, str(FRAMES)])
+    print(f"in a wind: {found}, the command: {expected}")
+    if found != expected:
+        sys.exit("the hashes differ")
+    reader = os.path.join(prefix, "libexec", "repose", "repose-vdb-reader")
+    os.rename(reader, reader + "-away")
+    done = subprocess.run([program, scene, "1"], capture_output=True, text=True)
+    os.rename(reader + "-away", reader)
+    if done.returncode != 66 or reader not in done.stderr:
+        sys.exit(f"without the reader of VDB files: {done.returncode}, {done.stderr}")
+
+
 def shared(folder):
     prefix, build = os.path.join(folder, "prefix"), os.path.join(folder, "build")
     install(prefix)
     configure_and_build(EXAMPLES, build, f"-DCMAKE_PREFIX_PATH={prefix}")
     check_hashes([os.path.join(build, name) for name in ("frames", "bunny")], folder)
     check_errors(os.path.join(build, "frames"))
+    check_grids(os.path.join(build, "frames"), prefix, folder)
     print(run([os.path.join(build, "host")]).strip())
     bunny = os.path.join(SCENES, "bunny.json")
     print(hash_of([os.path.join(build, "bunny"), bunny, "1"]), "after a frame of the bunny")
@@ -147,7 +179,8 @@ def deb(folder):
             f"--log={folder}/dpkg.log"]
     run(dpkg + ["-i", *packages])
     files = [os.path.join(at, name) for at, _, all_names in os.walk(os.path.join(root, "usr")) for name in all_names]
-    wanted = ("librepose.so.0", "repose.h", "repose.hpp", "repose-config.cmake", "repose.pc", "bin/repose")
+    wanted = ("librepose.so.0", "repose.h", "repose.hpp", "repose-config.cmake", "repose.pc", "bin/repose",
+              "libexec/repose/repose-vdb-reader")
     for one in wanted:
         if not [file for file in files if file.endswith(one)]:
             sys.exit(f"{one} is not installed")
