@@ -51,10 +51,12 @@ typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const Sta
     Near entry{k, {}};
     for (std::size_t node = 0; node < kBlockNodes; ++node) {
       const Vec3 x = place.node(node);
-      const Vec3 normal = in_plane(solids_[k].normal(x, 0.25 * state.spacing), place.flat_axis());
+      const WayInPlane way(solids_[k].normal(x, 0.25 * state.spacing), place.flat_axis());
       NodeContact<Real>& contact = entry.nodes[node];
-      contact.distance = static_cast<Real>(solids_[k].distance(x) - kNodeReach * state.spacing);
-      for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);
+      const double distance = solids_[k].distance(x);
+      const double nowhere = solids_[k].contact == Contact::kSticky ? distance : search_distance(state.spacing);
+      contact.distance = static_cast<Real>(way.distance(distance, nowhere) - kNodeReach * state.spacing);
+      for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(way.normal[axis]);
     }
     near.push_back(entry);
   }

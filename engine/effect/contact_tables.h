@@ -162,7 +162,8 @@ void ContactTables<Real>::hold_at(const Access& at, const Distance& distance, co
     const std::optional<double> was = before(in_plane(end - way, flat_axis_));
     const double allowed = std::max(kDepthHeld * dx, was ? -*was : depth - kMostPush * dx);
     if (depth <= allowed) continue;
-    const Vec3 push = (depth - allowed) / dx * in_plane(normal(end, 0.25 * dx), flat_axis_);
+    const WayInPlane out(normal(end, 0.25 * dx), flat_axis_);
+    const Vec3 push = (depth - allowed) / dx * out.stretch * out.normal;
     for (int axis = 0; axis < 3; ++axis) {
       Real& coordinate = x[static_cast<std::size_t>(axis)][p];
       coordinate += static_cast<Real>(push[axis]);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/effect/solid.h"
+#include "engine/effect/way_in_plane.h"
 #include "engine/geometry/mesh_sequence.h"
 #include "engine/plan/contact_law.h"
 #include "engine/state/block_extent.h"
@@ -89,7 +90,7 @@ template <bool kDeforms, class Real>
   const bool separating = solid_.contact == Contact::kSeparating;
   const double path = separating ? dt * std::sqrt(static_cast<double>(dot(v, v))) : 0.0;
   const NodeContact<Real> out_of_reach{std::numeric_limits<Real>::max(), {Real(0), Real(0), Real(0)}};
-  double distance;  // when the step ends
+  double distance;  // when the step ends, to the surface; then along the plane
   Vec3 normal, speed;
   if constexpr (kDeforms) {
     const double side = solid_.hollow ? -1.0 : 1.0;
@@ -98,7 +99,7 @@ template <bool kDeforms, class Real>
     std::fill_n(wall, 3, Real(0));
     if (distance > path) return out_of_reach;
     const Vec3 outward = shape_->normal(x, 0.25 * spacing, at.way);
-    normal = in_plane(side * outward, flat_axis);
+    normal = side * outward;
     speed = in_plane(ways_per_second_ * MorphedShape::way(at, outward), flat_axis);
     for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(speed[axis]);
   } else {
@@ -107,11 +108,15 @@ template <bool kDeforms, class Real>
     speed = still_ ? Vec3(0, 0, 0) : in_plane((end_.point(begin_.own(x)) - x) / dt, flat_axis);
     for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(speed[axis]);
     if (distance > path) return out_of_reach;
-    normal = in_plane(end_.direction(solid_.normal(own, 0.25 * spacing)), flat_axis);
+    normal = end_.direction(solid_.normal(own, 0.25 * spacing));
   }
+  const WayInPlane way(normal, flat_axis);
+  if (way.stretch == 0.0 && solid_.contact != Contact::kSticky) return out_of_reach;
+  if (way.stretch > 1.0) distance = way.stretch * (distance + kNodeReach * spacing) - kNodeReach * spacing;
   // A separating node moves on from where the solid stands when the step begins.
-  NodeContact<Real> contact{static_cast<Real>(separating ? distance + dt * normal.dot(speed) : distance), {}};
-  for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(normal[axis]);
+  NodeContact<Real> contact{static_cast<Real>(separating ? distance + dt * way.normal.dot(speed) : distance),
+                            {}};
+  for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(way.normal[axis]);
   return contact;
 }
 

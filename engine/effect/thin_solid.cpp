@@ -27,20 +27,32 @@ class ThickenedShape : public Shape {
   double by_;  // m
 };
 
-/// Whether some point of a box of half diagonal `half` about x lies as deep in the shape as `depth` (m). Depth
-/// changes no faster than place, so most boxes are done with by one look.
-bool reaches_depth(const Shape& shape, const Vec3& x, const Vec3& half, double depth, double finest) {
-  const double here = -shape.signed_distance(x);
-  if (here >= depth) return true;
-  if (here + half.norm() < depth || half.norm() < finest) return false;
-  int axis = 0;
-  half.maxCoeff(&axis);
-  Vec3 side = Vec3::Zero(), quarter = half;
-  quarter[axis] *= 0.5;
-  side[axis] = quarter[axis];
-  return reaches_depth(shape, x - side, quarter, depth, finest) ||
-         reaches_depth(shape, x + side, quarter, depth, finest);
-}
+/// Looks for a place that lies deep in a shape. Depth changes no faster than place, so most boxes are done with
+/// by one look; of what is large and thin there are still very many.
+class DepthSearch {
+ public:
+  DepthSearch(const Shape& shape, double finest) : shape_(shape), finest_(finest) {}
+
+  /// Whether some point of a box of half diagonal `half` about x lies as deep as `depth` (m). After ten million
+  /// looks, about a second, what has not been found counts as not there.
+  bool reaches(const Vec3& x, const Vec3& half, double depth) {
+    const double here = -shape_.signed_distance(x);
+    if (here >= depth) return true;
+    if (here + half.norm() < depth || half.norm() < finest_ || ++looks_ > kMostLooks) return false;
+    int axis = 0;
+    half.maxCoeff(&axis);
+    Vec3 side = Vec3::Zero(), quarter = half;
+    quarter[axis] *= 0.5;
+    side[axis] = quarter[axis];
+    return reaches(x - side, quarter, depth) || reaches(x + side, quarter, depth);
+  }
+
+ private:
+  static constexpr int kMostLooks = 10'000'000;
+  const Shape& shape_;
+  double finest_;
+  int looks_ = 0;
+};
 
 bool has_end(const Bounds& bounds) {
   return bounds.lower.allFinite() && bounds.upper.allFinite();
@@ -58,8 +70,9 @@ double thickness_wanting(const Solid& solid, double spacing) {
   const Vec3 middle = 0.5 * (bounds.lower + bounds.upper), half = 0.5 * (bounds.upper - bounds.lower);
   const double needed = 0.5 * kLeastThickness * spacing;
   // A tenth of a cell is let pass: a wall of just that is meant well, and a mesh errs by as much.
+  DepthSearch search(*solid.shape, 0.05 * spacing);
   const auto reaches = [&](double depth) {
-    return reaches_depth(*solid.shape, middle, half, depth, 0.05 * spacing);
+    return half.minCoeff() >= depth && search.reaches(middle, half, depth);
   };
   if (reaches(needed - 0.1 * spacing)) return 0.0;
   for (const double share : {0.75, 0.5, 0.25}) {

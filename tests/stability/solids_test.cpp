@@ -111,6 +111,44 @@ TEST(Solids, ThickEnough_IsLeftAlone) {
   EXPECT_TRUE(warnings.empty()) << warnings[0];
 }
 
+// Its length is a mistake, of the kind that spoilt scenes have; whether it is thin, is told at once.
+TEST(Solids, ThinPlateOfNoEnd_IsThickenedAtOnce) {
+  const std::string text = std::string(R"({"repose": 1, "name": "endless", "grid": {"spacing": 0.01}, )") +
+                           kSand +
+                           R"(, "bodies": [{"name": "b", "material": "sand",
+                              "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.04, 0.04, 0.04]}}],
+        "colliders": [{"name": "plate", "shape": {"type": "box", "lower": [-1, -0.015, -1],
+                       "upper": [1e30, 0, 1e30]}}]})";
+  const auto simulation = simulate(scene_of(text));
+  ASSERT_EQ(simulation->warnings().size(), 1u);
+  EXPECT_NE(simulation->warnings()[0].find("thinner than two cells"), std::string::npos);
+}
+
+/// Sand of plane strain that falls 5 cm onto a floor whose normal leans by `lean` to one of height; the floor's
+/// section by the plane is level, whatever that is.
+Diagnostics on_leaning_floor(double lean, const std::string& more) {
+  const std::string text =
+      std::string(R"({"repose": 1, "name": "leaning", "grid": {"spacing": 0.01, "plane_strain": "z"}, )") +
+      kSand +
+      R"(, "bodies": [{"name": "b", "material": "sand",
+                       "shape": {"type": "box", "lower": [0, 0.05, -1], "upper": [0.1, 0.15, 1]}}],
+         "colliders": [{"name": "floor", "friction": 0.5, "shape": {"type": "plane", "normal": [0, 1, )" +
+      std::to_string(lean) + "]}" + more + "}]}";
+  const auto simulation = simulate(scene_of(text));
+  EXPECT_TRUE(run_until(*simulation, 0.3));
+  return simulation->diagnose();
+}
+
+TEST(PlaneStrain, FloorThatLeansOutOfThePlane_HoldsAsItsSection) {
+  for (const char* more : {"", R"(, "contact": "slip")",
+                           R"(, "motion": {"keys": [{"time": 0}, {"time": 1, "translation": [0.1, 0, 0]}]})"}) {
+    const Diagnostics level = on_leaning_floor(0.0, more), leaning = on_leaning_floor(1.5, more);
+    EXPECT_NEAR(leaning.lower[1], level.lower[1], 5e-4) << more;
+    EXPECT_NEAR(leaning.center_of_mass[1], level.center_of_mass[1], 5e-4) << more;
+  }
+  EXPECT_LT(on_leaning_floor(100.0, "").upper[1], -0.1) << "all but across the plane, it is no floor";
+}
+
 /// A heap dropped on a post in a stretch of 0.32 m; post, sand and a sink moved along by `shift` (m).
 std::unique_ptr<Simulation> post(double shift, const std::string& more = "") {
   const auto at = [shift](double x) { return std::to_string(x + shift); };
