@@ -29,10 +29,17 @@ struct KnownAttribute {
   OutputAttribute attribute;
 };
 constexpr KnownAttribute kKnownAttributes[] = {
-    {"stress", OutputAttribute::kStress},     {"pressure", OutputAttribute::kPressure},
-    {"density", OutputAttribute::kDensity},   {"elastic_strain", OutputAttribute::kElasticStrain},
-    {"speed", OutputAttribute::kSpeed},       {"age", OutputAttribute::kAge},
+    {"stress", OutputAttribute::kStress},
+    {"pressure", OutputAttribute::kPressure},
+    {"density", OutputAttribute::kDensity},
+    {"elastic_strain", OutputAttribute::kElasticStrain},
+    {"speed", OutputAttribute::kSpeed},
+    {"age", OutputAttribute::kAge},
     {"channels", OutputAttribute::kChannels},
+    {"shear_rate", OutputAttribute::kShearRate},
+    {"inertial_number", OutputAttribute::kInertialNumber},
+    {"plastic_strain", OutputAttribute::kPlasticStrain},
+    {"velocity_gradient", OutputAttribute::kVelocityGradient},
 };
 
 /// "a,b, c" into what points are to carry. Returns the name that is unknown, or nothing.
@@ -151,8 +158,12 @@ repose_status repose_points_create(repose_engine handle, const repose_points_opt
         if (!unknown.empty())
           return fail({ErrorKind::kUsage,
                        "no such attribute; choose among stress, pressure, elastic_strain, density, speed, age, "
-                       "channels",
+                       "shear_rate, inertial_number, plastic_strain, velocity_gradient, channels",
                        std::string(unknown)});
+        for (const OutputAttribute attribute : wanted.attributes) {
+          const std::string lacks = engine.simulation->lacking(attribute);
+          if (!lacks.empty()) return fail({ErrorKind::kUsage, lacks, "options.attributes"});
+        }
       }
       if (options->up < REPOSE_UP_OF_SCENE || options->up > REPOSE_UP_Z)
         return fail(REPOSE_ERROR_ARGUMENT, "is no REPOSE_UP", "options.up");

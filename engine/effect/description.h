@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,9 +37,16 @@ struct Channel {
 };
 
 /// The channels that are known beyond their effects, for attributes of points: log volume that a particle has
-/// gained beside its strain, and the time at which it began, s.
+/// gained beside its strain, the time at which it began, s, and how much it has flowed.
 inline constexpr Handle<"volume_gained", Place::kExtra> kVolumeGained;
 inline constexpr Handle<"birth", Place::kExtra> kBirth;
+inline constexpr Handle<"equivalent_plastic_strain", Place::kExtra> kEquivalentPlasticStrain;
+
+/// The grains of a material.
+struct Grains {
+  double diameter;  ///< d, m
+  double density;   ///< rho_s, without pores, kg/m^3
+};
 
 /// Of the trial strain, less the volume that has been accounted for since: from the first half of the volume
 /// correction to its second.
@@ -108,6 +116,8 @@ struct EffectDescription {
   /// Its key, where implicit steps cannot have it.
   const char* explicit_only() const { return nullptr; }
   std::vector<Channel> channels(const SetDescription&) const { return {}; }
+  /// What it knows of the grains of a material.
+  std::optional<Grains> grains(const std::string& /*material*/) const { return {}; }
 };
 
 /// What the description of an effect must have.

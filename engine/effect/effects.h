@@ -23,6 +23,7 @@ using BuiltInEffects = std::tuple<Gravity, Colliders>;
 #include "engine/effect/manufactured.h"
 #include "engine/effect/moisture.h"
 #include "engine/effect/pin.h"
+#include "engine/effect/plastic_strain.h"
 #include "engine/effect/prestress.h"
 #include "engine/effect/probe.h"
 #include "engine/effect/rate_friction.h"
@@ -44,6 +45,7 @@ using BuiltInEffects = std::tuple<Emitters,           // particles that begin
                                   Manufactured,       // bodies that move as a formula says
                                   Age,                // when particles began
                                   DensityCorrection,  // strain by where particles lie, before the trial strain
+                                  PlasticStrain,      // how much particles have flowed
                                   VolumeCorrection,   // around the return map, and around all that follows here
                                   Hardening,          // cone <- that of the shear so far
                                   Cohesion,           // cohesion, and tension after the return

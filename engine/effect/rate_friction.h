@@ -21,6 +21,13 @@ struct RateFriction : ConeDescription<RateFrictionParameters> {
 
   void declare_in_cone(Fields& fields, const std::string& material);
   std::string why() const { return why_by(kName); }
+  std::optional<Grains> grains(const std::string& material) const {
+    for (const Entry& entry : entries) {
+      if (entry.material == material)
+        return Grains{entry.parameters.grain_diameter, entry.parameters.grain_density};
+    }
+    return {};
+  }
   template <class Real>
   EffectResult<Real> make(const Surroundings& surroundings) const;
 };

@@ -9,6 +9,12 @@ namespace repose {
 namespace {
 
 void strip(Json::Value& root) {
+  Json::Value none(Json::objectValue);
+  for (Json::Value& material : root.isMember("materials") ? root["materials"] : none) {
+    if (!material.isObject()) continue;  // of these, only attributes of points know
+    material.removeMember("grain_diameter");
+    material.removeMember("grain_density");
+  }
   root.removeMember("output");
   root.removeMember("camera");
   root.removeMember("study");

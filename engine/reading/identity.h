@@ -9,8 +9,8 @@
 
 namespace repose {
 
-/// What a state depends on, as compact JSON: all of a canonical scene but time.frames, output, camera and
-/// study.
+/// What a state depends on, as compact JSON: all of a canonical scene but time.frames, output, camera, study,
+/// and the grains of materials.
 std::string identity_text(Json::Value root);
 
 /// The first key that differs between the identities of two canonical texts, with both values: "bodies.box.seed

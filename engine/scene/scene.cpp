@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/wording.h"
+#include "engine/scene/attributes.h"
 #include "engine/scene/numerics.h"
 
 namespace repose {
@@ -22,8 +24,32 @@ constexpr Choice kAttributes[] = {
     {"density", "kg/m^3, as the elastic strain and the volume that volume_correction remembers leave it"},
     {"speed", "m/s"},
     {"channels", "every number per particle that an effect keeps, by its own name"},
-    {"age", "s since a particle began, with the scene or from an emitter; asks for the scene's key \"age\""}};
+    {"age", "s since a particle began, with the scene or from an emitter; asks for the scene's key \"age\""},
+    {"shear_rate",
+     "1/s, sqrt(2 D':D') of the deviatoric rate of strain; in simple shear the slope of velocity"},
+    {"inertial_number", "shear_rate d / sqrt(p / rho_s); asks for the key \"grain_diameter\" of the materials"},
+    {"plastic_strain", "equivalent plastic strain so far; asks for the scene's key \"plastic_strain\""},
+    {"velocity_gradient",
+     "1/s, the affine matrix C that particles keep; 9 components by rows, xx xy xz yx ..."}};
 constexpr double kFinestVoxel = 1.0 / 16.0;  // of files, spacings
+
+void describe_grains(Fields& fields, const Scene& scene, MaterialDescription& material) {
+  const bool known = grains_of(scene, material).has_value();
+  double diameter = std::numeric_limits<double>::quiet_NaN();
+  fields.number("grain_diameter", diameter,
+                {.unit = "m",
+                 .meaning = "d of the attribute \"inertial_number\", without rate_friction, which has its own",
+                 .low = 0.0,
+                 .low_open = true});
+  fields.number("grain_density", material.grain_density,
+                {.unit = "kg/m^3",
+                 .meaning = "rho_s of the same, of the grains without pores",
+                 .low = 0.0,
+                 .low_open = true});
+  if (!std::isnan(diameter)) material.grain_diameter = diameter;
+  fields.check(!known || !material.grain_diameter, "grain_diameter",
+               "rate_friction.grain_diameter is that of this material already; leave one of them out");
+}
 
 /// One alternative per material of the list; choosing one makes it the material's law. What has a cone may also
 /// have the keys of the effects that act on it.
@@ -35,6 +61,7 @@ void describe_law(Fields& fields, Scene& scene, MaterialDescription& material, s
     std::get<chosen>(law).describe(f);
     if constexpr (std::variant_alternative_t<chosen, MaterialParameters>::kHasCone) {
       for_each_effect(scene.effects, [&](auto& effect) { effect.declare_in_cone(f, material.name); });
+      describe_grains(f, scene, material);
     }
   };
   const Alternative laws[] = {{std::variant_alternative_t<k, MaterialParameters>::kName,
@@ -86,24 +113,17 @@ void describe_surface(Fields& fields, SurfaceDescription& surface, double spacin
       {.meaning = "times that the surface is averaged over its neighbours", .low = 0.0, .high = 100.0});
 }
 
-/// Whether every set keeps a channel: an effect that adds it for all adds it for any.
-bool all_keep(const Scene& scene, const std::string& channel) {
-  bool kept = false;
-  for_each_effect(scene.effects, [&](const auto& effect) {
-    for (const Channel& each : effect.channels(SetDescription{})) kept = kept || each.name == channel;
-  });
-  return kept;
-}
-
-void describe_output(Fields& fields, OutputDescription& output, double spacing, bool ages) {
+void describe_output(Fields& fields, Scene& scene) {
+  OutputDescription& output = scene.output;
+  const double spacing = scene.grid.spacing;
   fields.flag("vdb", output.vdb, "points as NAME.points.####.vdb");
   fields.flag("ply", output.ply, "points as PLY");
   fields.flag("vtp", output.vtp, "points as VTK polygonal data");
   fields.choices("attributes", output.attributes, kAttributes, "what points carry beside P, v, id and pscale");
-  const auto& wanted = output.attributes;
-  fields.check(ages || std::find(wanted.begin(), wanted.end(), OutputAttribute::kAge) == wanted.end(),
-               "attributes",
-               "\"age\" needs particles that remember when they began: add \"age\": {} to the scene");
+  for (const OutputAttribute attribute : output.attributes) {
+    const std::string lacks = lacking(scene, attribute);
+    fields.check(lacks.empty(), "attributes", lacks);
+  }
   fields.object("surface", output.surface.given, false,
                 "the surface of the material, a level set, as NAME.surface.####.vdb",
                 [&](Fields& f) { describe_surface(f, output.surface, spacing); });
@@ -219,9 +239,8 @@ void describe(Fields& fields, Scene& scene) {
                              scene.up == UpAxis::kZ};
   for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields, outline); });
   check_sets(fields, scene);
-  fields.object("output", given, false, "what is written per frame", [&](Fields& f) {
-    describe_output(f, scene.output, scene.grid.spacing, all_keep(scene, kBirth.kName));
-  });
+  fields.object("output", given, false, "what is written per frame",
+                [&](Fields& f) { describe_output(f, scene); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",
                 [&](Fields& f) { describe_camera(f, scene.camera); });
 }

@@ -77,6 +77,9 @@ inline Clock clock_of(const TimeDescription& time) {
 struct MaterialDescription {
   std::string name;
   MaterialParameters parameters;
+  /// Of what has a cone: d and rho_s of its grains, m and kg/m^3, for the inertial number.
+  std::optional<double> grain_diameter{};
+  double grain_density = 2500.0;
 
   /// Position in the list of materials.
   int law() const { return static_cast<int>(parameters.index()); }

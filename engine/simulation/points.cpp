@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
+
+#include "engine/scene/attributes.h"
 
 namespace repose {
 namespace {
@@ -21,8 +24,9 @@ struct Source {
   const ParticleSet<Real>& set;
   const MaterialDescription& material;
   const MaterialKernels<Real>& kernels;
-  const std::uint32_t* row;  ///< of each particle of the set, in the cloud
-  double time;               ///< of the state, s
+  const std::uint32_t* row;      ///< of each particle of the set, in the cloud
+  double time;                   ///< of the state, s
+  std::optional<Grains> grains;  ///< of the material
 };
 
 /// The row of each particle, set after set: its place among all ids.
@@ -131,6 +135,67 @@ void put_age(const Source<Real>& source, std::vector<float>& values) {
   }
 }
 
+template <class Real>
+void put_velocity_gradient(const Source<Real>& source, std::vector<float>& values) {
+  for (std::size_t p = 0; p < source.set.count; ++p) {
+    float* to = &values[9 * std::size_t{source.row[p]}];
+    for (std::size_t k = 0; k < 9; ++k)
+      to[k] = source.set.keeps_affine ? static_cast<float>(source.set.affine[k][p]) : std::nanf("");
+  }
+}
+
+/// sqrt(2 D' : D') of the gradient that a particle keeps, 1/s.
+template <class Real>
+double shear_rate(const ParticleSet<Real>& set, std::size_t p) {
+  if (!set.keeps_affine) return std::nan("");
+  const auto at = [&](std::size_t row, std::size_t column) { return double(set.affine[3 * row + column][p]); };
+  const double mean = (at(0, 0) + at(1, 1) + at(2, 2)) / 3.0;
+  double square = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double rate = 0.5 * (at(i, j) + at(j, i)) - (i == j ? mean : 0.0);
+      square += 2.0 * rate * rate;
+    }
+  }
+  return std::sqrt(square);
+}
+
+template <class Real>
+void put_shear_rate(const Source<Real>& source, std::vector<float>& values) {
+  for (std::size_t p = 0; p < source.set.count; ++p)
+    values[source.row[p]] = static_cast<float>(shear_rate(source.set, p));
+}
+
+template <class Real>
+void put_inertial_number(const Source<Real>& source, std::vector<float>& values) {
+  if (!source.grains) {
+    for (std::size_t p = 0; p < source.set.count; ++p) values[source.row[p]] = std::nanf("");
+    return;
+  }
+  for_each_stress(source, [&](std::size_t p, const std::array<double, 6>& tau) {
+    const double pressure = -(tau[0] + tau[3] + tau[5]) / (3.0 * std::exp(trace_of(source.set, p)));
+    const double rate = shear_rate(source.set, p);
+    // d sqrt(rho_s / p) is the time that grains take to be pressed together; without pressure they never are.
+    const double heaviness =
+        pressure <= 0.0 ? std::numeric_limits<double>::infinity() : source.grains->density / pressure;
+    const double number = rate == 0.0 ? 0.0 : rate * source.grains->diameter * std::sqrt(heaviness);
+    values[source.row[p]] = static_cast<float>(number);
+  });
+}
+
+template <class Real>
+void put_plastic_strain(const Source<Real>& source, std::vector<float>& values) {
+  const std::size_t channel = source.set.extra_index(kEquivalentPlasticStrain.kName);
+  const bool known = channel < source.set.extra.size();
+  const bool yields = std::visit([](const auto& law) { return std::decay_t<decltype(law)>::kYields; },
+                                 source.material.parameters);
+  for (std::size_t p = 0; p < source.set.count; ++p) {
+    values[source.row[p]] = known    ? static_cast<float>(source.set.extra[channel].values[p])
+                            : yields ? std::nanf("")
+                                     : 0.0f;
+  }
+}
+
 /// How an attribute of one name is computed. An attribute of the scene is a line of the list, in its order.
 template <class Real>
 struct Recipe {
@@ -141,13 +206,17 @@ struct Recipe {
 };
 
 template <class Real>
-constexpr std::array<Recipe<Real>, 6> kRecipes{
+constexpr std::array<Recipe<Real>, 10> kRecipes{
     {{OutputAttribute::kStress, "stress", 6, put_stress<Real>},
      {OutputAttribute::kPressure, "pressure", 1, put_pressure<Real>},
      {OutputAttribute::kElasticStrain, "elastic_strain", 6, put_elastic_strain<Real>},
      {OutputAttribute::kDensity, "density", 1, put_density<Real>},
      {OutputAttribute::kSpeed, "speed", 1, put_speed<Real>},
-     {OutputAttribute::kAge, "age", 1, put_age<Real>}}};
+     {OutputAttribute::kAge, "age", 1, put_age<Real>},
+     {OutputAttribute::kShearRate, "shear_rate", 1, put_shear_rate<Real>},
+     {OutputAttribute::kInertialNumber, "inertial_number", 1, put_inertial_number<Real>},
+     {OutputAttribute::kPlasticStrain, "plastic_strain", 1, put_plastic_strain<Real>},
+     {OutputAttribute::kVelocityGradient, "velocity_gradient", 9, put_velocity_gradient<Real>}}};
 
 /// Every channel of every set; zero where a set lacks it.
 template <class Real>
@@ -236,7 +305,8 @@ PointCloud make_points(const Scene& scene, const State<Real>& state, const Kerne
   const std::uint32_t* row = rows.data();
   for (const auto& set : state.sets) {
     const MaterialDescription& material = scene.materials[static_cast<std::size_t>(set.material)];
-    sources.push_back({set, material, kernels.material[material.law()], row, state.counters.time});
+    sources.push_back({set, material, kernels.material[material.law()], row, state.counters.time,
+                       grains_of(scene, material)});
     row += set.count;
   }
   PointCloud cloud;

@@ -79,6 +79,8 @@ class Simulation {
   virtual std::size_t particles_asleep() const = 0;
   /// All particles in the order of their ids, with what is wanted of them (engine/simulation/points.h).
   virtual PointCloud points(const PointsWanted& wanted = {}) const = 0;
+  /// What the scene lacks that an attribute of points rests on, and what would give it; empty where nothing.
+  virtual std::string lacking(OutputAttribute attribute) const = 0;
   virtual Diagnostics diagnose() = 0;
   virtual LedgerReport ledger() const = 0;
   virtual std::uint64_t hash() const = 0;

@@ -9,6 +9,7 @@
 #include "engine/compiler/compiler.h"
 #include "engine/plan/contact_log.h"
 #include "engine/plan/frame_clock.h"
+#include "engine/scene/attributes.h"
 #include "engine/simulation/diagnostics.h"
 #include "engine/simulation/points.h"
 #include "engine/simulation/simulation.h"
@@ -46,6 +47,7 @@ class SimulationOf final : public Simulation {
   PointCloud points(const PointsWanted& wanted) const override {
     return make_points(scene_, state_, *stepper_->plan().kernels, wanted);
   }
+  std::string lacking(OutputAttribute attribute) const override { return repose::lacking(scene_, attribute); }
   Diagnostics diagnose() override {
     return repose::diagnose(scene_, solids_at(solids_, state_.counters.time), state_, stepper_->threads());
   }

@@ -322,5 +322,42 @@ TEST(ApiHost, PointsWithZUp_AreTurned) {
   EXPECT_THROW(z_up.read("speed"), Error);
 }
 
+TEST(ApiHost, AttributesOfShear_AreCopiedWhereTheSceneHasTheirKeys) {
+  const auto copy = [](const Engine& engine, const char* attributes) {
+    repose_points_options options = repose_points_options_init();
+    options.attributes = attributes;
+    return engine.points(options);
+  };
+  Engine engine = box_engine();
+  engine.advance_frame();
+  for (const auto& [attribute, key] :
+       {std::pair("inertial_number", "grain_diameter"), std::pair("plastic_strain", "plastic_strain"),
+        std::pair("age", "age")}) {
+    try {
+      copy(engine, attribute);
+      ADD_FAILURE() << attribute;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.status(), REPOSE_ERROR_USAGE);
+      EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
+    }
+  }
+  const Points gradients = copy(engine, "velocity_gradient,shear_rate");
+  EXPECT_EQ(gradients.components("velocity_gradient"), 9);
+  std::vector<float> rows(9 * gradients.size()), rates(gradients.size());
+  gradients.read("velocity_gradient", rows);
+  gradients.read("shear_rate", rates);
+  for (std::size_t p = 0; p < rates.size(); ++p) {
+    double square = 0.0, trace = 0.0;
+    for (int k = 0; k < 9; ++k) {
+      const double rate = 0.5 * (rows[9 * p + k] + rows[9 * p + 3 * (k % 3) + k / 3]);
+      square += 2.0 * rate * rate;
+      trace += k % 4 == 0 ? rate : 0.0;
+    }
+    ASSERT_NEAR(rates[p], std::sqrt(std::max(0.0, square - 2.0 / 3.0 * trace * trace)),
+                1e-4 * (1.0 + rates[p]));
+  }
+  EXPECT_EQ(copy(box_engine(1, ", \"plastic_strain\": {}"), "plastic_strain").components("plastic_strain"), 1);
+}
+
 }  // namespace
 }  // namespace repose

@@ -235,15 +235,15 @@ enum { REPOSE_UP_OF_SCENE = 0, REPOSE_UP_Y = 1, REPOSE_UP_Z = 2 };
 typedef struct repose_points_options {
   uint32_t size, version;
   const char*
-      attributes; /**< beside P, v, id, pscale: "stress,pressure,elastic_strain,density,speed,age,channels"
-                       or some of them; null: none */
+      attributes; /**< beside P, v, id, pscale, any of "stress,pressure,elastic_strain,density,speed,age,
+                   shear_rate,inertial_number,plastic_strain,velocity_gradient,channels"; or null */
   int32_t mass;   /**< not 0: also "mass" */
   int32_t up;     /**< in which frame P and v are; tensors are in the scene's alone */
 } repose_points_options;
 
 /**
  * A copy of all particles in the order of their ids, which lasts until it is destroyed, whatever the engine
- * does. `options` may be null. Errors: USAGE for an attribute that is unknown, MEMORY.
+ * does. `options` may be null. Errors: USAGE for an attribute that is unknown or lacks its key; MEMORY.
  */
 REPOSE_API repose_status repose_points_create(repose_engine engine, const repose_points_options* options,
                                               repose_points* points);
@@ -251,7 +251,7 @@ REPOSE_API repose_status repose_points_destroy(repose_points points);
 REPOSE_API repose_status repose_points_count(repose_points points, size_t* count);
 /**
  * Numbers per particle of an attribute: 3 of "P" (m) and "v" (m/s), 1 of "pscale" (m), 6 of tensors (xx yy zz
- * xy yz xz, Pa), 1 of the others. Error: USAGE.
+ * xy yz xz, Pa), 9 of "velocity_gradient" (by rows, 1/s), 1 of the others. Error: USAGE.
  */
 REPOSE_API repose_status repose_points_components(repose_points points, const char* attribute,
                                                   int32_t* components);

@@ -79,5 +79,57 @@ TEST(Age, AttributeWithoutItsKey_IsRefused) {
             "the scene");
 }
 
+TEST(PlasticStrain, AttributeWithoutItsKey_IsRefused) {
+  const auto of = [](const char* more) {
+    return errors(with("\"colliders\"", more + std::string(", \"colliders\"")));
+  };
+  EXPECT_EQ(of(R"("output": {"attributes": ["plastic_strain"]}, "plastic_strain": {})"), "");
+  EXPECT_EQ(of(R"("output": {"attributes": ["plastic_strain"]})"),
+            "s.json:9:28: output.attributes: \"plastic_strain\" needs particles that add up how much they have "
+            "flowed: add \"plastic_strain\": {} to the scene");
+}
+
+TEST(InertialNumber, WithoutGrains_IsRefusedByTheKeyThatIsMissing) {
+  const auto of = [](const std::string& keys) {
+    return errors(with("\"drucker_prager\"", "\"drucker_prager\"" + keys),
+                  {.overrides = {"output={\"attributes\": [\"inertial_number\"]}"}});
+  };
+  EXPECT_NE(of("").find("\"inertial_number\" needs the diameter of the grains: add \"grain_diameter\" (m) to "
+                        "materials.sand"),
+            std::string::npos)
+      << of("");
+  EXPECT_EQ(of(", \"grain_diameter\": 1e-3"), "");
+  EXPECT_EQ(of(", \"rate_friction\": {}"), "") << "it has a diameter of its own";
+  EXPECT_NE(of(", \"rate_friction\": {}, \"grain_diameter\": 1e-3").find("leave one of them out"),
+            std::string::npos);
+  EXPECT_NE(of(", \"grain_diameter\": 0").find("greater than 0"), std::string::npos)
+      << of(", \"grain_diameter\": 0");
+  EXPECT_NE(errors(kRubber, {.overrides = {"output={\"attributes\": [\"inertial_number\"]}"}})
+                .find("no material of the scene has any"),
+            std::string::npos);
+}
+
+TEST(VelocityGradient, OfATransferThatKeepsNone_IsRefused) {
+  for (const std::string name : {"velocity_gradient", "shear_rate", "inertial_number"}) {
+    const auto of = [&](const std::string& transfer) {
+      return errors(
+          with("\"drucker_prager\"", "\"drucker_prager\", \"grain_diameter\": 1e-3"),
+          {.overrides = {"output={\"attributes\": [\"" + name + "\"]}", "grid.transfer=" + transfer}});
+    };
+    for (const char* keeps : {"mls_apic", "apic", "rpic", "aflip"}) EXPECT_EQ(of(keeps), "") << name;
+    for (const std::string keeps_none : {"pic", "flip"}) {
+      EXPECT_NE(of(keeps_none)
+                    .find("\"" + name +
+                          "\" is of the velocity gradient that particles keep, and with "
+                          "grid.transfer " +
+                          keeps_none +
+                          " they keep none; choose mls_apic, apic, rpic or "
+                          "aflip"),
+                std::string::npos)
+          << of(keeps_none);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace repose

@@ -26,7 +26,8 @@ TEST(SceneErrors, ListOfNames_EachIsChecked) {
   EXPECT_EQ(
       attributes("[\"stress\", \"presure\"]"),
       "s.json:9:39: output.attributes[1]: found text \"presure\"; expected one of \"stress\", \"pressure\", "
-      "\"elastic_strain\", \"density\", \"speed\", \"channels\", \"age\"; did you mean \"pressure\"?");
+      "\"elastic_strain\", \"density\", \"speed\", \"channels\", \"age\", \"shear_rate\", \"inertial_number\", "
+      "\"plastic_strain\", \"velocity_gradient\"; did you mean \"pressure\"?");
   EXPECT_EQ(attributes("[\"speed\", \"speed\"]"),
             "s.json:9:38: output.attributes[1]: text \"speed\" is there twice; once is enough");
   EXPECT_THAT(attributes("\"speed\""),

@@ -130,7 +130,7 @@ TEST(SceneSchema, ListOfNames_IsClosedAndHasNoneTwice) {
   const Json::Value schema = parsed_schema();
   const Json::Value& attributes = property(property(schema, "output"), "attributes");
   EXPECT_EQ(attributes["type"].asString(), "array");
-  EXPECT_EQ(attributes["items"]["enum"].size(), 7u);
+  EXPECT_EQ(attributes["items"]["enum"].size(), 11u);
   EXPECT_TRUE(attributes["uniqueItems"].asBool());
   EXPECT_TRUE(attributes["default"].isArray() && attributes["default"].empty());
   EXPECT_NE(scene_reference().find("| `attributes` | | [] | list of any of `stress`: Cauchy stress"),

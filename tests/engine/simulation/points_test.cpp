@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "engine/state/block_sort.h"
@@ -167,6 +168,95 @@ TEST(Points, Age_IsTheTimeSinceBirth) {
     for (std::size_t p = 0; p < set.count; ++p) set.extra.back().values[p] = 0.5 * set.id[p];
   }
   EXPECT_EQ(attribute(points_of(state, {{kAge}, false}), "age").values, (std::vector<float>{2.5f, 2.0f, 1.5f}));
+}
+
+/// Gives every particle of every set a velocity gradient, by rows.
+template <class Real>
+void set_gradient(State<Real>& state, const std::array<double, 9>& gradient) {
+  for (auto& set : state.sets) {
+    for (std::size_t p = 0; p < set.count; ++p) {
+      for (std::size_t k = 0; k < 9; ++k) set.affine[k][p] = static_cast<Real>(gradient[k]);
+    }
+  }
+}
+
+double shear_rate_of(const std::array<double, 9>& gradient) {
+  State<double> state = state_of<double>({{0}, {1}});
+  set_gradient(state, gradient);
+  return attribute(points_of(state, {{kShearRate}, false}), "shear_rate").values[0];
+}
+
+TEST(Points, VelocityGradient_IsTheMatrixByRows) {
+  State<float> state = state_of<float>({{2, 0}, {1}});
+  const std::array<double, 9> gradient{1, 2, 3, 4, 5, 6, 7, 8, 9};
+  set_gradient(state, gradient);
+  state.sets[0].affine[1][0] = 20.0f;
+  const PointCloud points = points_of(state, {{kVelocityGradient}, false});
+  const PointAttribute& found = attribute(points, "velocity_gradient");
+  ASSERT_EQ(found.components, 9);
+  ASSERT_EQ(found.values.size(), 27u);
+  for (std::size_t k = 0; k < 9; ++k) EXPECT_EQ(found.values[k], static_cast<float>(gradient[k]));
+  EXPECT_EQ(found.values[2 * 9 + 1], 20.0f) << "xy of id 2";
+}
+
+TEST(Points, ShearRate_IsThatOfTheDeviatorAlone) {
+  EXPECT_NEAR(shear_rate_of({0, 7, 0, 0, 0, 0, 0, 0, 0}), 7.0, 1e-6) << "simple shear: the slope of velocity";
+  EXPECT_NEAR(shear_rate_of({0, 0, 0, 0, 0, 0, 0, -7, 0}), 7.0, 1e-6) << "whatever the plane and the sense";
+  EXPECT_EQ(shear_rate_of({0, -3, 2, 3, 0, -1, -2, 1, 0}), 0.0) << "a rigid spin";
+  EXPECT_NEAR(shear_rate_of({4, 0, 0, 0, 4, 0, 0, 0, 4}), 0.0, 1e-6) << "a change of size";
+  EXPECT_NEAR(shear_rate_of({2, 0, 0, 0, -2, 0, 0, 0, 0}), 4.0, 1e-6)
+      << "pure shear: the difference of stretchings";
+  EXPECT_NEAR(shear_rate_of({-1, 0, 0, 0, 0.5, 0, 0, 0, 0.5}), std::sqrt(3.0), 1e-6)
+      << "triaxial, axial rate 1";
+}
+
+TEST(Points, GradientThatTransfersDoNotKeep_IsNotANumber) {
+  State<double> state = state_of<double>({{0}, {1}});
+  for (auto& set : state.sets) set.keeps_affine = false;
+  for (const PointAttribute& each :
+       points_of(state, {{kVelocityGradient, kShearRate, kInertialNumber}, false}).attributes) {
+    if (each.name == "material") continue;
+    for (const float value : each.values) EXPECT_TRUE(std::isnan(value)) << each.name;
+  }
+}
+
+TEST(Points, InertialNumber_IsOfRatePressureAndGrains) {
+  Scene scene = two_materials();
+  scene.materials[0].grain_diameter = 2e-3;
+  scene.materials[0].grain_density = 2600.0;
+  State<double> state = state_of<double>({{0, 1, 2}, {3}});
+  set_gradient(state, {0, 5, 0, 0, 0, 0, 0, 0, 0});
+  const double trace = -3e-3;  // of id 0; id 1 bears nothing, and id 2 shears not either
+  for (const std::size_t k : {0, 3, 5}) state.sets[0].strain[k][0] = trace / 3.0;
+  state.sets[0].affine[1][2] = 0.0;
+  const PointsWanted wanted{{kInertialNumber}, false};
+  const auto values_of = [&](const Scene& of) {
+    return attribute(make_points(of, state, kernels<double>(Target::kBaseline), wanted), "inertial_number")
+        .values;
+  };
+  const Elasticity& e = scene.materials[0].elasticity();
+  const double pressure = -(e.lambda() + 2.0 / 3.0 * e.mu()) * trace / std::exp(trace);
+  const std::vector<float> values = values_of(scene);
+  EXPECT_NEAR(values[0], 5.0 * 2e-3 / std::sqrt(pressure / 2600.0), 1e-8);
+  EXPECT_EQ(values[1], std::numeric_limits<float>::infinity()) << "it flies";
+  EXPECT_EQ(values[2], 0.0f);
+  EXPECT_TRUE(std::isnan(values[3])) << "rubber has no grains";
+  scene.effect<RateFriction>().entries.push_back({"sand", {.grain_diameter = 4e-3, .grain_density = 2600.0}});
+  EXPECT_NEAR(values_of(scene)[0], 2.0 * values[0], 1e-7) << "the grains of the law that asks for them";
+}
+
+TEST(Points, PlasticStrain_IsTheChannelOfItsEffect) {
+  State<float> state = state_of<float>({{1, 0}, {2}});
+  const auto values = [&] {
+    return attribute(points_of(state, {{kPlasticStrain}, false}), "plastic_strain").values;
+  };
+  EXPECT_TRUE(std::isnan(values()[0])) << "nobody has added it up";
+  EXPECT_EQ(values()[2], 0.0f) << "rubber does not yield";
+  state.sets[0].extra.push_back({kEquivalentPlasticStrain.kName, {}});
+  state.sets[0].extra.back().values.resize(2);
+  state.sets[0].extra.back().values[0] = 0.25f;
+  state.sets[0].extra.back().values[1] = 0.5f;
+  EXPECT_EQ(values(), (std::vector<float>{0.5f, 0.25f, 0.0f}));
 }
 
 TEST(Points, StressOfManyParticles_IsThatOfEach) {
