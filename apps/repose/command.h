@@ -72,6 +72,17 @@ struct StudyArguments {
   bool quiet = false;
 };
 
+struct ElementArguments {
+  SceneArguments scene;
+  std::string material;  ///< its name; empty: the only one
+  std::string path;      ///< triaxial, triaxial_extension, oedometric, simple_shear, or a CSV file
+  std::string out;       ///< folder; empty: out/NAME-element
+  std::string hold;      ///< of simple_shear: stress (or empty), volume
+  std::optional<double> pressure, strain, rate;  ///< Pa, log strain, 1/s
+  std::optional<int> steps;
+  bool quiet = false;
+};
+
 int run_command(const RunArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int check_command(const SceneArguments& arguments);
@@ -82,6 +93,7 @@ int info_command(const std::vector<std::string>& files);
 int movie_command(const MovieArguments& arguments);
 int figures_command(const FiguresArguments& arguments);
 int study_command(const StudyArguments& arguments);
+int element_command(const ElementArguments& arguments);
 int schema_command(bool reference);
 
 /// Prints "repose: error: ..." and gives the exit code.

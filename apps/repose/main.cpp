@@ -60,6 +60,34 @@ void add_study_options(CLI::App& command, StudyArguments& study) {
   command.add_flag("--quiet", study.quiet, "say nothing but errors");
 }
 
+void add_element_options(CLI::App& command, ElementArguments& element) {
+  add_scene_options(command, element.scene);
+  command.add_option("--material", element.material, "name of the material (default: the only one)");
+  command
+      .add_option(
+          "--path", element.path,
+          "triaxial, triaxial_extension: along z under constant pressure from the sides; oedometric: along z, "
+          "sides held; simple_shear: dv_x/dz; or a CSV file of steps (docs/element.md)")
+      ->required();
+  command.add_option("--out", element.out, "folder (default: out/NAME-element)");
+  command
+      .add_option(
+          "--pressure", element.pressure,
+          "Pa, all around before the path begins (default: youngs_modulus / 1000; oedometric and files: 0)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--strain", element.strain,
+                  "how far: log strain of the axis, or slope of shear (default 0.1)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--steps", element.steps, "in how many steps (default 1000)")
+      ->check(CLI::Range(1, 10000000));
+  command.add_option("--rate", element.rate, "how fast, 1/s, which rate_friction alone feels (default 0.01)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--hold", element.hold,
+                     "simple_shear: stress (default), the normal stress across its planes, or volume");
+  command.add_flag("--quiet", element.quiet, "say nothing but errors");
+}
+
 /// " (did you mean run?)", where a command is called much like `word`.
 std::string meant(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
@@ -147,6 +175,12 @@ int main(int count, char** words) {
       "accuracy against time: varies keys of a scene, measures each run, and writes a page with the curves");
   add_study_options(study_app, study);
   study_app.callback([&] { code = study_command(study); });
+
+  ElementArguments element;
+  CLI::App& element_app = *app.add_subcommand(
+      "element", "one element of a material without a grid along a laboratory's path: CSV, plots and a page");
+  add_element_options(element_app, element);
+  element_app.callback([&] { code = element_command(element); });
 
   BenchArguments bench;
   CLI::App& bench_app =
