@@ -18,10 +18,16 @@
 
 namespace repose {
 
+/// In place of a count: the arena that the calling thread is in, with the limits that its maker has set.
+inline constexpr int kThreadsOfCaller = -1;
+
 class Threads {
  public:
   /// An arena of `count` threads of our own; it shares the process's TBB workers and changes no global setting.
-  explicit Threads(int count) : arena_(count) {
+  /// With kThreadsOfCaller that of the thread which makes this, for all calls, whoever makes them.
+  explicit Threads(int count)
+      : arena_(count == kThreadsOfCaller ? tbb::task_arena(tbb::task_arena::attach())
+                                         : tbb::task_arena(count)) {
     const CleanFloatingPoint clean;
     context_.capture_fp_settings();
   }

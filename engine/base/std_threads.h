@@ -12,9 +12,14 @@
 
 namespace repose {
 
+/// In place of a count: without TBB there is no arena of a caller, so as many as the machine has.
+inline constexpr int kThreadsOfCaller = -1;
+
 class Threads {
  public:
-  explicit Threads(int count) : count_(count) {}
+  explicit Threads(int count)
+      : count_(count == kThreadsOfCaller ? std::max(1, static_cast<int>(std::thread::hardware_concurrency()))
+                                         : count) {}
 
   int count() const { return count_; }
   static int index() { return index_; }
