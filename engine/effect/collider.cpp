@@ -250,7 +250,8 @@ class ContactWithSolids : public Effect<Real> {
     rest.wake("solid " + solid.name, [=](const State<Real>& state, const Index3& block, double from,
                                          double to) {
       const Vec3 x = BlockPlace<Real>(state, block).middle();
-      const bool rests = solid.motion->pose(from).own(x) == solid.motion->pose(to).own(x);
+      const bool rests =
+          !solid.motion->driven() && solid.motion->pose(from).own(x) == solid.motion->pose(to).own(x);
       return !rests && may_reach(state, std::min(distance_then(solid, from, x), distance_then(solid, to, x)));
     });
   }

@@ -98,6 +98,7 @@ bool MovingSolid::prepare(double time, double dt, const Bounds& nodes, double ma
   begin_ = solid_.motion->pose(time);
   end_ = solid_.motion->pose(time + dt);
   still_ = begin_.rotation == end_.rotation && begin_.translation == end_.translation;
+  drive_ = solid_.motion->driven();
   return drift(nodes, listed_, end_) > margin;
 }
 
@@ -118,7 +119,12 @@ Vec3 MovingSolid::normal(const Vec3& x, double h) const {
 double MovingSolid::fastest(double from, double to, const Bounds& nodes) const {
   if (deforms()) return solid_.sequence->fastest(from, to);
   const Vec3 pivot = solid_.motion->pose(from).point(solid_.motion->pivot());
-  return solid_.motion->fastest(from, to, std::min(radius_, farthest(nodes, pivot)));
+  const double moved = solid_.motion->fastest(from, to, std::min(radius_, farthest(nodes, pivot)));
+  if (!solid_.motion->driven()) return moved;
+  const Drive& drive = *solid_.motion->driven();
+  const double reach = std::min(radius_ + (pivot - drive.center).norm(), farthest(nodes, drive.center));
+  const double spun = drive.spin.isZero(0.0) ? 0.0 : drive.spin.norm() * reach;
+  return std::max(moved, drive.velocity.norm() + spun);
 }
 
 }  // namespace repose

@@ -56,8 +56,9 @@ class MovingSolid {
   Vec3 image(const Vec3& x) const;
 
   /// A node beside it; `wall` becomes the velocity that keeps a point of the solid at its place in the body
-  /// over the whole step, (x(t + dt) - x(t))/dt. It is affine in x where the solid is rigid, so what sticks is
-  /// carried without drift, where the velocity of the moment would let it spiral outwards by (w dt)^2/2 a step.
+  /// over the whole step, (x(t + dt) - x(t))/dt, or what a host says in its place. It is affine in x where the
+  /// solid is rigid, so what sticks is carried without drift, where the velocity of the moment would let it
+  /// spiral outwards by (w dt)^2/2 a step.
   template <bool kDeforms, class Real>
   NodeContact<Real> meet(const Vec3& node, double dt, double spacing, int flat_axis, const Real* v,
                          Real* wall) const;
@@ -74,6 +75,7 @@ class MovingSolid {
   Vec3 middle_ = Vec3::Zero();      // of a rigid one's bounds, or its pivot, as a point of the body
   Placement listed_, begin_, end_;  // when the list was made; at the ends of the step
   bool still_ = false;              // begin is end
+  std::optional<Drive> drive_;      // what a host says of its surface, in this step
   bool stands_ = false;
   // Of one that deforms. Its lists begin with windows of time, whatever the step that asks: so a run that goes
   // on from a file has the same lists, although the distance between frames is no exact one.
@@ -106,8 +108,11 @@ template <bool kDeforms, class Real>
     const Vec3 own = end_.own(x);
     distance = solid_.distance(own) - kNodeReach * spacing;
     speed = still_ ? Vec3(0, 0, 0) : in_plane((end_.point(begin_.own(x)) - x) / dt, flat_axis);
-    for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(speed[axis]);
-    if (distance > path) return out_of_reach;
+    const Vec3 surface = drive_ ? in_plane(drive_->at(x), flat_axis) : speed;
+    for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(surface[axis]);
+    // A surface that is said to move comes to nodes though the solid does not.
+    const double comes = drive_ && separating ? dt * surface.norm() : 0.0;
+    if (distance > path + comes) return out_of_reach;
     normal = end_.direction(solid_.normal(own, 0.25 * spacing));
   }
   const WayInPlane way(normal, flat_axis);

@@ -36,6 +36,15 @@ struct MotionDescription {
 /// Declares the scene keys of a motion.
 void describe(Fields& fields, MotionDescription& motion);
 
+/// A velocity of every point x: velocity + spin x (x - center).
+struct Drive {
+  Vec3 velocity{0, 0, 0};  ///< m/s, at the centre
+  Vec3 spin{0, 0, 0};      ///< rad/s
+  Vec3 center{0, 0, 0};    ///< m
+
+  Vec3 at(const Vec3& x) const { return velocity + spin.cross(x - center); }
+};
+
 /// Interpolates keys; rests before the first and after the last. Immutable, so it may be asked from many
 /// threads. Where all keys turn about one line, angles are interpolated as the translation is and may exceed a
 /// full turn; a stretch between two lines is a slerp, the short way.
@@ -50,6 +59,9 @@ class RigidMotion {
   /// pose, the pivot along a line and at constant rates, within `seconds`; with none it stands there at once.
   void lead(double time, double seconds, const Placement& to);
   bool is_led() const { return lead_.has_value(); }
+  /// Of one that is led, likewise: its surface moves so, whatever its poses come to; without one by its poses.
+  void drive(const std::optional<Drive>& drive) { drive_ = drive; }
+  const std::optional<Drive>& driven() const { return drive_; }
 
   /// Where the solid stands at a time (s): x -> rotation (x - pivot) + pivot + translation.
   Placement pose(double time) const;
@@ -91,6 +103,7 @@ class RigidMotion {
   std::vector<Vec4> values_;  // per key, with angles about one direction of the line where there is one
   std::vector<Stretch> stretches_;
   std::optional<Lead> lead_;
+  std::optional<Drive> drive_;
 };
 
 }  // namespace repose
