@@ -20,6 +20,7 @@ using BuiltInEffects = std::tuple<Gravity, Colliders>;
 #include "engine/effect/emitter.h"
 #include "engine/effect/force_field.h"
 #include "engine/effect/hardening.h"
+#include "engine/effect/host_channels.h"
 #include "engine/effect/manufactured.h"
 #include "engine/effect/moisture.h"
 #include "engine/effect/pin.h"
@@ -44,6 +45,7 @@ using BuiltInEffects = std::tuple<Emitters,           // particles that begin
                                   Prestress,          // bodies begin under their weight
                                   Manufactured,       // bodies that move as a formula says
                                   Age,                // when particles began
+                                  HostChannels,       // numbers of hosts
                                   DensityCorrection,  // strain by where particles lie, before the trial strain
                                   PlasticStrain,      // how much particles have flowed
                                   VolumeCorrection,   // around the return map, and around all that follows here

@@ -11,7 +11,7 @@
 
 namespace repose {
 
-/// A named attribute with 1, 3, 6 or 9 components per particle.
+/// A named attribute with 1, 2, 3, 4, 6 or 9 components per particle.
 struct PointAttribute {
   std::string name;
   int components = 1;

@@ -12,6 +12,8 @@
 namespace repose {
 namespace {
 
+constexpr std::array<const char*, 2> kPairSuffix{"_x", "_y"};
+constexpr std::array<const char*, 4> kFourSuffix{"_x", "_y", "_z", "_w"};
 constexpr std::array<const char*, 3> kVectorSuffix{"_x", "_y", "_z"};
 constexpr std::array<const char*, 6> kSymmetricSuffix{"_xx", "_yy", "_zz", "_xy", "_yz", "_xz"};
 constexpr std::array<const char*, 9> kMatrixSuffix{"_xx", "_xy", "_xz", "_yx", "_yy",
@@ -19,8 +21,12 @@ constexpr std::array<const char*, 9> kMatrixSuffix{"_xx", "_xy", "_xz", "_yx", "
 
 std::span<const char* const> suffixes(int components) {
   switch (components) {
+    case 2:
+      return kPairSuffix;
     case 3:
       return kVectorSuffix;
+    case 4:
+      return kFourSuffix;
     case 6:
       return kSymmetricSuffix;
     case 9:
@@ -48,8 +54,8 @@ Result<void> check_attributes(const PointCloud& points, const std::string& path)
     const int n = attribute.components;
     const std::string label = "attribute '" + attribute.name + "' ";
     const auto refuse = [&](const std::string& why) { return Error{ErrorKind::kUsage, label + why, path}; };
-    if (n != 1 && n != 3 && n != 6 && n != 9) {
-      return refuse("has " + std::to_string(n) + " components; 1, 3, 6 and 9 can be written");
+    if (n != 1 && suffixes(n).empty()) {
+      return refuse("has " + std::to_string(n) + " components; 1, 2, 3, 4, 6 and 9 can be written");
     }
     if (!is_plain_name(attribute.name)) {
       return refuse("must have a name of letters, digits and _, at most 64, that starts with a letter");
@@ -67,7 +73,7 @@ Result<void> check_attributes(const PointCloud& points, const std::string& path)
 
 // Length of the group of scalars at `first` that are the components of one attribute; 1 where there is none.
 std::size_t group_length(const std::vector<PointAttribute>& scalars, std::size_t first) {
-  for (const int components : {9, 6, 3}) {
+  for (const int components : {9, 6, 4, 3, 2}) {
     const auto names = suffixes(components);
     const std::string& start = scalars[first].name;
     const std::string suffix = names[0];

@@ -10,13 +10,13 @@
 
 namespace repose {
 
-/// Refuses a cloud that no format could hold: arrays of unequal length, attributes with other than 1, 3, 6 or 9
-/// components, names that are not [A-Za-z][A-Za-z0-9_]* or are taken (64), positions that are not finite (74).
-/// `path` names the file in the error.
+/// Refuses a cloud that no format could hold: arrays of unequal length, attributes with other than 1, 2, 3, 4,
+/// 6 or 9 components, names that are not [A-Za-z][A-Za-z0-9_]* or are taken (64), positions that are not finite
+/// (74). `path` names the file in the error.
 Result<void> check_cloud(const PointCloud& points, const std::string& path);
 
-/// Name of component `k`: "stress_xx". Three are x y z; six are xx yy zz xy yz xz, a symmetric tensor in the
-/// order of VTK; nine are xx xy xz yx ... row by row. A single component keeps the plain name.
+/// Name of component `k`: "stress_xx". Up to four are x y z w; six are xx yy zz xy yz xz, a symmetric tensor in
+/// the order of VTK; nine are xx xy xz yx ... row by row. A single component keeps the plain name.
 std::string component_name(const PointAttribute& attribute, int k);
 
 /// Undoes component_name: consecutive scalar attributes that name all components of one become that one.

@@ -2,6 +2,7 @@
 // written.
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace repose {
@@ -45,9 +46,11 @@ struct PointsWanted {
   ///                  grains
   ///  plastic_strain  sum over steps of sqrt(2/3) |dev(trial - returned)|; 0 for what does not yield; not a
   ///                  number for sand where the scene has no key "plastic_strain"
-  ///  channels        each number that an effect keeps, under its own name; 0 where a set keeps none
+  ///  channels        each number that an effect keeps, under its own name, and what hosts keep; 0 where a set
+  ///  has none
   std::vector<OutputAttribute> attributes;
-  bool mass = false;  ///< PointCloud::mass
+  bool mass = false;                    ///< PointCloud::mass
+  std::vector<std::string> channels{};  ///< some of the channels, by name, in the order of the sets
 };
 
 }  // namespace repose

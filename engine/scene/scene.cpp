@@ -211,6 +211,24 @@ void check_sets(Fields& fields, const Scene& scene) {
                "must hold at least one object, unless there is one in \"emitters\"");
 }
 
+/// No two numbers of a particle have one name, whoever keeps them.
+void check_channels(Fields& fields, const Scene& scene) {
+  for (const MaterialDescription& material : scene.materials) {
+    std::vector<std::string> names = std::visit(
+        [](const auto& law) { return std::vector<std::string>(law.kChannels.begin(), law.kChannels.end()); },
+        material.parameters);
+    for_each_effect(scene.effects, [&](const auto& effect) {
+      for (const Channel& channel : effect.channels({material.name, material.name, material.parameters})) {
+        const bool taken = std::find(names.begin(), names.end(), channel.name) != names.end();
+        fields.check(
+            !taken, "channels",
+            "\"" + channel.name + "\" is what an effect or a law calls a number of its own; choose another");
+        names.push_back(channel.name);
+      }
+    });
+  }
+}
+
 }  // namespace
 
 void describe(Fields& fields, Scene& scene) {
@@ -239,6 +257,7 @@ void describe(Fields& fields, Scene& scene) {
                              scene.up == UpAxis::kZ};
   for_each_effect(scene.effects, [&](auto& effect) { effect.declare(fields, outline); });
   check_sets(fields, scene);
+  check_channels(fields, scene);
   fields.object("output", given, false, "what is written per frame",
                 [&](Fields& f) { describe_output(f, scene); });
   fields.object("camera", scene.camera.given, false, "how a film looks at the run; without it, at the material",

@@ -218,20 +218,45 @@ constexpr std::array<Recipe<Real>, 10> kRecipes{
      {OutputAttribute::kPlasticStrain, "plastic_strain", 1, put_plastic_strain<Real>},
      {OutputAttribute::kVelocityGradient, "velocity_gradient", 9, put_velocity_gradient<Real>}}};
 
-/// Every channel of every set; zero where a set lacks it.
+/// Channels of one set that are one attribute: "Cd.x", "Cd.y" and "Cd.z" are "Cd", others are one each.
+struct Lanes {
+  std::string name;
+  std::size_t first, count;
+};
+
 template <class Real>
-void add_channels(const std::vector<Source<Real>>& sources, PointCloud& cloud) {
+std::vector<Lanes> lanes_of(const ParticleSet<Real>& set) {
+  std::vector<Lanes> list;
+  for (std::size_t k = 0; k < set.extra.size(); ++k) {
+    const std::string stem = set.extra[k].name.substr(0, set.extra[k].name.find('.'));
+    if (!list.empty() && list.back().name == stem) {
+      ++list.back().count;
+    } else {
+      list.push_back({stem, k, 1});
+    }
+  }
+  return list;
+}
+
+/// Channels of every set, all or those that are named; zero where a set lacks one.
+template <class Real>
+void add_channels(const std::vector<Source<Real>>& sources, const std::vector<std::string>* named,
+                  PointCloud& cloud) {
   const std::size_t first = cloud.attributes.size();
   for (const Source<Real>& source : sources) {
-    for (const auto& channel : source.set.extra) {
+    for (const Lanes& lanes : lanes_of(source.set)) {
+      if (named != nullptr && std::find(named->begin(), named->end(), lanes.name) == named->end()) continue;
+      const std::size_t n = lanes.count;
       std::size_t at = first;
-      while (at < cloud.attributes.size() && cloud.attributes[at].name != channel.name) ++at;
+      while (at < cloud.attributes.size() && cloud.attributes[at].name != lanes.name) ++at;
       if (at == cloud.attributes.size()) {
-        cloud.attributes.push_back({channel.name, 1, std::vector<float>(cloud.size())});
+        cloud.attributes.push_back({lanes.name, static_cast<int>(n), std::vector<float>(n * cloud.size())});
       }
       std::vector<float>& values = cloud.attributes[at].values;
-      for (std::size_t p = 0; p < source.set.count; ++p) {
-        values[source.row[p]] = static_cast<float>(channel.values[p]);
+      for (std::size_t k = 0; k < n; ++k) {
+        const Real* const from = source.set.extra[lanes.first + k].values.data();
+        for (std::size_t p = 0; p < source.set.count; ++p)
+          values[n * source.row[p] + k] = static_cast<float>(from[p]);
       }
     }
   }
@@ -239,7 +264,7 @@ void add_channels(const std::vector<Source<Real>>& sources, PointCloud& cloud) {
 
 template <class Real>
 void add_attribute(OutputAttribute wanted, const std::vector<Source<Real>>& sources, PointCloud& cloud) {
-  if (wanted == OutputAttribute::kChannels) return add_channels(sources, cloud);
+  if (wanted == OutputAttribute::kChannels) return add_channels(sources, nullptr, cloud);
   for (const Recipe<Real>& recipe : kRecipes<Real>) {
     if (recipe.attribute != wanted) continue;
     const std::size_t n = static_cast<std::size_t>(recipe.components);
@@ -324,6 +349,7 @@ PointCloud make_points(const Scene& scene, const State<Real>& state, const Kerne
     cloud.attributes.push_back({"material", 1, by_set(sources, rows.size(), law)});
   }
   for (const OutputAttribute attribute : wanted.attributes) add_attribute(attribute, sources, cloud);
+  if (!wanted.channels.empty()) add_channels(sources, &wanted.channels, cloud);
   if (wanted.mass) {
     cloud.mass =
         by_set(sources, rows.size(), [](const Source<Real>& source) { return source.set.particle_mass; });

@@ -49,8 +49,9 @@ PointCloud make_cloud(std::size_t count, std::array<double, 3> origin = {0, 0, 0
     points.id.push_back(static_cast<std::uint32_t>(0xfffffff0u - 7 * p));  // above the range of int32
     points.radius.push_back(0.005f + 1e-6f * static_cast<float>(p % 100));
   }
-  for (const auto& [name, components] : {std::pair{"density", 1}, std::pair{"normal", 3},
-                                         std::pair{"stress", 6}, std::pair{"F", 9}, std::pair{"age", 1}}) {
+  for (const auto& [name, components] :
+       {std::pair{"density", 1}, std::pair{"normal", 3}, std::pair{"stress", 6}, std::pair{"uv", 2},
+        std::pair{"F", 9}, std::pair{"orient", 4}, std::pair{"age", 1}}) {
     PointAttribute attribute{name, components, {}};
     for (std::size_t i = 0; i < count * static_cast<std::size_t>(components); ++i) {
       attribute.values.push_back(static_cast<float>(unit(random)));
