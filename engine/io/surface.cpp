@@ -6,6 +6,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Dense.h>
 #include <openvdb/tools/Filter.h>
 #include <openvdb/tools/LevelSetRebuild.h>
 #include <openvdb/tools/Prune.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/memory.h"
 #include "engine/base/parallel.h"
 #include "engine/io/point_layout.h"
 #include "engine/io/vdb_file.h"
@@ -35,20 +37,25 @@ Error out_of_range(const std::string& what, const std::string& path) {
   return {ErrorKind::kUsage, what, path};
 }
 
-/// The whole file: the grids that `make` gives.
+/// The grids that `make` gives.
+template <class Make>
+Result<vdb::GridCPtrVec> built(const std::string& path, Make&& make) {
+  return without_exceptions(path, "building the grid", [&]() -> Result<vdb::GridCPtrVec> {
+    vdb::initialize();
+    vdb::GridCPtrVec made;
+    // One thread: OpenVDB's meshing may depend on which triangle of two comes first.
+    Threads(1).for_each(1, [&](std::size_t) { made = make(); });
+    return made;
+  });
+}
+
+/// The whole file.
 template <class Make>
 Result<void> write_grids(const std::string& path, Make&& make) {
   // The file before the work: a folder that refuses is told at once.
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
-  const Result<vdb::GridCPtrVec> grids =
-      without_exceptions(path, "building the grid", [&]() -> Result<vdb::GridCPtrVec> {
-        vdb::initialize();
-        vdb::GridCPtrVec made;
-        // One thread: OpenVDB's meshing may depend on which triangle of two comes first.
-        Threads(1).for_each(1, [&](std::size_t) { made = make(); });
-        return made;
-      });
+  const Result<vdb::GridCPtrVec> grids = built(path, make);
   if (!grids) return grids.error();
   const Result<void> done = stream_vdb(*file, path, [&](std::ostream& stream) {
     vdb::MetaMap meta;
@@ -279,9 +286,52 @@ vdb::GridCPtrVec make_fog(const PointCloud& points, const FogOptions& options) {
   return {density, velocity};
 }
 
-}  // namespace
+// --- Boxes
 
-Result<void> write_surface(const PointCloud& points, const SurfaceOptions& options, const std::string& path) {
+/// All values of a grid within a box; vectors as three numbers each.
+template <class GridType, class Value>
+void copy_box(const vdb::GridBase& grid, const vdb::CoordBBox& box, DenseVolume::Grid& to) {
+  const auto* const from = dynamic_cast<const GridType*>(&grid);
+  if (from == nullptr) return;
+  to.components = static_cast<int>(sizeof(Value) / sizeof(float));
+  to.values.resize(box.volume() * static_cast<std::size_t>(to.components));
+  vdb::tools::Dense<Value, vdb::tools::LayoutZYX> dense(box, reinterpret_cast<Value*>(to.values.data()));
+  vdb::tools::copyToDense(*from, dense, /*serial=*/true);
+}
+
+/// The grids, which share their voxels, on the box of what is active.
+Result<DenseVolume> boxed(const vdb::GridCPtrVec& grids, double most_bytes) {
+  DenseVolume volume;
+  const vdb::CoordBBox box = grids[0]->evalActiveVoxelBoundingBox();
+  double numbers = 0.0;
+  for (const vdb::GridBase::ConstPtr& grid : grids) {
+    volume.grids.push_back({grid->getName(), 1, {}});
+    numbers += grid->isType<vdb::Vec3SGrid>() ? 3.0 : 1.0;
+  }
+  const vdb::Vec3d voxel = grids[0]->voxelSize(), lower = grids[0]->indexToWorld(box.min());
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    volume.voxel[k] = voxel[axis];
+    if (box.empty()) continue;
+    volume.lower[k] = lower[axis];
+    volume.count[k] = static_cast<std::uint64_t>(box.dim()[axis]);
+  }
+  if (box.empty()) return volume;
+  const double bytes =
+      sizeof(float) * numbers * double(volume.count[0]) * double(volume.count[1]) * double(volume.count[2]);
+  if (bytes > most_bytes)
+    return Error{ErrorKind::kMemory,
+                 "a box of its voxels needs " + bytes_text(bytes) + ", and " + bytes_text(most_bytes) +
+                     " are left of what may be used; coarser voxels need less",
+                 grids[0]->getName()};
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    copy_box<vdb::FloatGrid, float>(*grids[k], box, volume.grids[k]);
+    copy_box<vdb::Vec3SGrid, vdb::Vec3s>(*grids[k], box, volume.grids[k]);
+  }
+  return volume;
+}
+
+Result<void> check_surface(const PointCloud& points, const SurfaceOptions& options, const std::string& path) {
   if (Result<void> good = check_voxels(points, options.voxel, path); !good) return good;
   if (points.size() > 0 && !(options.voxel <= points.spacing * (1.0 + 1e-9))) {
     return out_of_range("needs voxels of at most the spacing: particles fall through coarser ones", path);
@@ -290,13 +340,43 @@ Result<void> write_surface(const PointCloud& points, const SurfaceOptions& optio
       !(options.radius <= 4.0 * points.spacing * (1.0 + 1e-9)) || options.smoothing < 0) {
     return out_of_range("needs a radius from half a spacing to four, and smoothing of at least 0", path);
   }
-  return write_grids(path, [&] { return vdb::GridCPtrVec{make_surface(points, options)}; });
+  return {};
+}
+
+Result<void> check_fog(const PointCloud& points, const FogOptions& options, const std::string& path) {
+  if (Result<void> good = check_voxels(points, options.voxel, path); !good) return good;
+  if (points.mass.size() != points.size()) return out_of_range("needs the mass of each particle", path);
+  return {};
+}
+
+vdb::GridCPtrVec surface_alone(const PointCloud& points, const SurfaceOptions& options) {
+  return {make_surface(points, options)};
+}
+
+}  // namespace
+
+Result<void> write_surface(const PointCloud& points, const SurfaceOptions& options, const std::string& path) {
+  if (Result<void> good = check_surface(points, options, path); !good) return good;
+  return write_grids(path, [&] { return surface_alone(points, options); });
 }
 
 Result<void> write_fog(const PointCloud& points, const FogOptions& options, const std::string& path) {
-  if (Result<void> good = check_voxels(points, options.voxel, path); !good) return good;
-  if (points.mass.size() != points.size()) return out_of_range("needs the mass of each particle", path);
+  if (Result<void> good = check_fog(points, options, path); !good) return good;
   return write_grids(path, [&] { return make_fog(points, options); });
+}
+
+Result<DenseVolume> dense_surface(const PointCloud& points, const SurfaceOptions& options, double most_bytes) {
+  if (Result<void> good = check_surface(points, options, "surface"); !good) return good.error();
+  const auto grids = built("surface", [&] { return surface_alone(points, options); });
+  if (!grids) return grids.error();
+  return boxed(*grids, most_bytes);
+}
+
+Result<DenseVolume> dense_fog(const PointCloud& points, const FogOptions& options, double most_bytes) {
+  if (Result<void> good = check_fog(points, options, "fog"); !good) return good.error();
+  const auto grids = built("fog", [&] { return make_fog(points, options); });
+  if (!grids) return grids.error();
+  return boxed(*grids, most_bytes);
 }
 
 }  // namespace repose

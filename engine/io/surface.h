@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/io/dense_volume.h"
 #include "engine/io/point_cloud.h"
 
 namespace repose {
@@ -37,6 +38,11 @@ Result<void> write_surface(const PointCloud& points, const SurfaceOptions& optio
 /// The grids "density", kg/m^3, and "v", m/s, the momentum in a voxel over its mass. The cloud must have
 /// masses. Errors: as write_surface.
 Result<void> write_fog(const PointCloud& points, const FogOptions& options, const std::string& path);
+
+/// The same as boxes about what is there: "surface", with the edge of the band, 3 voxels, farther out and
+/// inside; "density" and "v". Errors: those of the writers; 78 where a box needs more than `most_bytes`.
+Result<DenseVolume> dense_surface(const PointCloud& points, const SurfaceOptions& options, double most_bytes);
+Result<DenseVolume> dense_fog(const PointCloud& points, const FogOptions& options, double most_bytes);
 
 /// What `info` tells of a grid.
 struct GridFigures {
