@@ -1,6 +1,7 @@
 // Repose: JSON text to tree and back, on JsonCpp. JsonCpp reads numbers through the C++ locale of the process,
-// so that a host with decimal commas would get 1 for 1.5, and it takes "-" and "01" for numbers; so numbers
-// are decoded again here, from their text.
+// so that a host with decimal commas would get 1 for 1.5, or be refused where points part thousands, and it
+// takes "-" and "01" for numbers; so it is shown whole numbers in the place of others, and numbers are decoded
+// again here, from their text.
 #include "engine/reading/json_text.h"
 
 #include <json/reader.h>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "engine/base/wording.h"
 
@@ -51,6 +53,26 @@ bool is_number(std::string_view text) {
   return i == text.size();
 }
 
+/// Whether what is a number is one with a fraction or an exponent.
+bool has_fraction(std::string_view number) {
+  return number.find_first_of(".eE") != std::string_view::npos;
+}
+
+/// The text with whole numbers, as long as they were, where there are fractions and exponents.
+std::string with_whole_numbers(const SourceText& source) {
+  std::string text = source.text();
+  source.for_each_word([&text](std::size_t start, std::size_t length) {
+    const std::string_view word = std::string_view(text).substr(start, length);
+    double decoded = 0.0;
+    if (!is_number(word) || !has_fraction(word)) return;
+    // What is too large for a double is left to JsonCpp, which says so.
+    if (std::from_chars(word.data(), word.data() + word.size(), decoded).ec != std::errc()) return;
+    const std::size_t sign = word[0] == '-' ? 1 : 0;
+    std::fill_n(text.begin() + static_cast<std::ptrdiff_t>(start + sign), length - sign, '1');
+  });
+  return text;
+}
+
 /// Decodes the numbers below `value` again from `text`, independently of any locale.
 void decode_numbers(Json::Value& value, std::string_view text, Complaints& complaints) {
   for (Json::Value& child : value) decode_numbers(child, text, complaints);
@@ -64,7 +86,7 @@ void decode_numbers(Json::Value& value, std::string_view text, Complaints& compl
                    "\"" + std::string(digits) + "\" is not a number; write for example 0.5, -2 or 1e-3");
     return;
   }
-  if (value.type() != Json::realValue) return;
+  if (value.type() != Json::realValue && !has_fraction(digits)) return;
   double decoded = 0.0;
   // Out of range means too small for a double here, as what is too large did not parse: zero stands for it.
   std::from_chars(digits.data(), digits.data() + digits.size(), decoded);
@@ -102,7 +124,7 @@ Json::Value parse_json(const SourceText& source, Complaints& complaints) {
   builder["rejectDupKeys"] = true;
   builder["stackLimit"] = kMostNested + 8;  // never met: the scanner above gives the place as well
   const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
-  const std::string& text = source.text();
+  const std::string text = with_whole_numbers(source);
   std::string report;
   bool parsed = false;
   try {
@@ -112,7 +134,7 @@ Json::Value parse_json(const SourceText& source, Complaints& complaints) {
     return root;
   }
   if (parsed) {
-    decode_numbers(root, text, complaints);
+    decode_numbers(root, source.text(), complaints);
   } else {
     complain_of_syntax(report, source, complaints);
   }

@@ -33,6 +33,7 @@ class Scanner {
 
   char first() const { return text_[start_]; }
   std::ptrdiff_t start() const { return static_cast<std::ptrdiff_t>(start_); }
+  std::size_t length() const { return position_ - start_; }
 
  private:
   static bool is_punctuation(char c) { return std::strchr("{}[],:", c) != nullptr && c != '\0'; }
@@ -105,6 +106,12 @@ std::optional<std::ptrdiff_t> SourceText::deeper_than(int limit) const {
     if (depth > limit) return scanner.start();
   }
   return std::nullopt;
+}
+
+void SourceText::for_each_word(const std::function<void(std::size_t, std::size_t)>& visit) const {
+  for (Scanner scanner(text_); scanner.next();) {
+    if (scanner.first() != '"') visit(static_cast<std::size_t>(scanner.start()), scanner.length());
+  }
 }
 
 std::ptrdiff_t SourceText::add_words(const std::string& words) {

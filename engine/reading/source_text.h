@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,6 +30,9 @@ class SourceText {
 
   /// Offset of a line and a column in bytes, both from 1, as the JSON library counts them.
   std::ptrdiff_t offset_of(std::ptrdiff_t line, std::ptrdiff_t column) const;
+
+  /// Calls visit(offset, length) for each word, number and punctuation mark outside texts and comments.
+  void for_each_word(const std::function<void(std::size_t, std::size_t)>& visit) const;
 
   /// Where braces and brackets first nest deeper than `limit`.
   std::optional<std::ptrdiff_t> deeper_than(int limit) const;

@@ -224,9 +224,11 @@ TEST(SceneReader, Canonical_EqualScenesGiveEqualText) {
   EXPECT_EQ(read(plain.canonical).canonical, plain.canonical);
 }
 
-/// A host's locale with decimal commas, without needing one installed.
+/// A host's locale with decimal commas, and points between thousands, without needing one installed.
 struct DecimalComma : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
 };
 
 TEST(SceneReader, HostWithDecimalComma_ReadsTheSame) {
