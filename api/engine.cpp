@@ -5,6 +5,7 @@
 #include <span>
 
 #include "api/objects.h"
+#include "engine/base/parallel.h"
 #include "engine/effect/collider.h"
 
 namespace repose::api {
@@ -46,12 +47,14 @@ repose_status simulation_options(const repose_engine_options* given, SimulationO
   if (const repose_status known = check_optional(given, "options"); known != REPOSE_OK) return known;
   if (given == nullptr) return REPOSE_OK;
   constexpr std::int32_t kMostThreads = 4096;
-  if (given->threads < 0 || given->threads > kMostThreads)
-    return fail(REPOSE_ERROR_ARGUMENT, "must lie between 0 (all) and 4096", "options.threads");
+  if (given->threads < REPOSE_THREADS_OF_CALLER || given->threads > kMostThreads)
+    return fail(REPOSE_ERROR_ARGUMENT, "must lie between 0 (all) and 4096, or be REPOSE_THREADS_OF_CALLER",
+                "options.threads");
   if (!find_target(given->target, options.target))
     return fail(REPOSE_ERROR_ARGUMENT, "is no REPOSE_TARGET", "options.target");
   if (!(given->memory_limit >= 0.0))
     return fail(REPOSE_ERROR_ARGUMENT, "must be a number of bytes, or 0", "options.memory_limit");
+  static_assert(REPOSE_THREADS_OF_CALLER == kThreadsOfCaller);
   options.threads = given->threads;
   options.memory_limit = given->memory_limit;
   options.log_contacts = given->log_contacts != 0;

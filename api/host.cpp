@@ -1,5 +1,8 @@
 // Repose: what a host does through the C API between calls that advance: colliders that it leads, particles
 // that it begins and ends.
+#include <optional>
+#include <vector>
+
 #include "api/objects.h"
 
 using namespace repose;
@@ -57,17 +60,87 @@ repose_status repose_contact(repose_engine handle, const char* collider, repose_
   });
 }
 
+repose_status repose_drive_collider(repose_engine handle, const char* collider, const double* velocity,
+                                    const double* spin, const double* center) {
+  return with_engine(handle, false, [&](EngineObject& engine) -> repose_status {
+    if (collider == nullptr) return null_argument("collider");
+    std::optional<SurfaceVelocity> surface;
+    if (velocity != nullptr) {
+      surface.emplace();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        surface->velocity[axis] = velocity[axis];
+        surface->spin[axis] = spin == nullptr ? 0.0 : spin[axis];
+        surface->center[axis] = center == nullptr ? 0.0 : center[axis];
+      }
+    }
+    const auto driven = engine.simulation->drive_solid(collider, surface);
+    return driven ? REPOSE_OK : fail(driven.error());
+  });
+}
+
 repose_status repose_add_particles(repose_engine handle, const char* emitter, const double* positions,
                                    const float* velocities, size_t count, uint32_t* first_id) {
+  return repose_add_particles_with(handle, emitter, positions, velocities, count, nullptr, nullptr, 0,
+                                   first_id);
+}
+
+namespace {
+
+/// More would have no ids.
+constexpr std::size_t kMostAdded = 4'000'000'000;
+
+repose_status too_many() {
+  return fail(REPOSE_ERROR_ARGUMENT, "is more than can be told apart, 4e9", "count");
+}
+
+}  // namespace
+
+repose_status repose_add_particles_with(repose_engine handle, const char* emitter, const double* positions,
+                                        const float* velocities, size_t count, const char* const* channels,
+                                        const float* const* values, size_t channel_count, uint32_t* first_id) {
   return with_engine(handle, true, [&](EngineObject& engine) -> repose_status {
     if (emitter == nullptr) return null_argument("emitter");
     if (positions == nullptr) return null_argument("positions");
-    if (count > std::size_t{4'000'000'000})
-      return fail(REPOSE_ERROR_ARGUMENT, "is more than can be told apart, 4e9", "count");
+    if (channel_count > 0 && channels == nullptr) return null_argument("channels");
+    if (channel_count > 0 && values == nullptr) return null_argument("values");
+    if (count > kMostAdded) return too_many();
+    std::vector<ChannelValues> kept;
+    for (std::size_t k = 0; k < channel_count; ++k) {
+      if (channels[k] == nullptr) return null_argument("channels");
+      if (values[k] == nullptr) return null_argument("values");
+      const std::size_t components = engine.simulation->channel_components(channels[k]);
+      kept.push_back({channels[k], {values[k], components * count}});
+    }
     const std::size_t numbers = velocities == nullptr ? 0 : 3 * count;
-    const auto first = engine.simulation->add_particles(emitter, {positions, 3 * count}, {velocities, numbers});
+    const auto first =
+        engine.simulation->add_particles(emitter, {positions, 3 * count}, {velocities, numbers}, kept);
     if (!first) return fail(first.error());
     if (first_id != nullptr) *first_id = *first;
+    return REPOSE_OK;
+  });
+}
+
+repose_status repose_channel_components(repose_engine handle, const char* channel, int32_t* components) {
+  return with_engine(handle, false, [&](const EngineObject& engine) -> repose_status {
+    if (channel == nullptr) return null_argument("channel");
+    if (components == nullptr) return null_argument("components");
+    *components = static_cast<std::int32_t>(engine.simulation->channel_components(channel));
+    if (*components > 0) return REPOSE_OK;
+    return fail({ErrorKind::kUsage, "no such channel in the scene's \"channels\"", channel});
+  });
+}
+
+repose_status repose_set_values(repose_engine handle, const char* channel, const uint32_t* ids,
+                                const float* values, size_t count, size_t* found) {
+  return with_engine(handle, false, [&](EngineObject& engine) -> repose_status {
+    if (channel == nullptr) return null_argument("channel");
+    if (ids == nullptr) return null_argument("ids");
+    if (values == nullptr) return null_argument("values");
+    if (count > kMostAdded) return too_many();
+    const std::size_t components = engine.simulation->channel_components(channel);
+    const auto set = engine.simulation->set_values({channel, {values, components * count}}, {ids, count});
+    if (!set) return fail(set.error());
+    if (found != nullptr) *found = *set;
     return REPOSE_OK;
   });
 }

@@ -10,6 +10,7 @@
 
 #include "api/error.h"
 #include "api/registry.h"
+#include "engine/io/dense_volume.h"
 #include "engine/reading/reader.h"
 #include "engine/simulation/simulation.h"
 
@@ -60,6 +61,12 @@ struct PointsObject {
 Registry<SceneObject>& scenes();
 Registry<EngineObject>& engines();
 Registry<PointsObject>& points();
+Registry<DenseVolume>& volumes();
+
+inline repose_status too_small(std::size_t needed) {
+  return fail({static_cast<ErrorKind>(REPOSE_ERROR_ARGUMENT),
+               "too little room: " + std::to_string(needed) + " numbers are to be copied", "capacity"});
+}
 
 /// Runs body(object) on the engine of a handle, which then does nothing else. `changes`: views are stale from
 /// now on.

@@ -1,8 +1,10 @@
-// Repose: what the C API reads of particles, blocks and probes: copies, and views of where numbers lie.
+// Repose: copies of particles that the C API makes.
 #include <algorithm>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
+#include "api/half.h"
 #include "api/objects.h"
 #include "engine/scene/scene.h"
 
@@ -11,15 +13,6 @@ namespace repose::api {
 Registry<PointsObject>& points() {
   static Registry<PointsObject>* const kept = new Registry<PointsObject>(3);
   return *kept;
-}
-
-const std::vector<SetView>& EngineObject::views() {
-  const std::uint64_t now = generation.load();
-  if (sets_of != now) {
-    sets = simulation->sets();
-    sets_of = now;
-  }
-  return sets;
 }
 
 namespace {
@@ -42,8 +35,26 @@ constexpr KnownAttribute kKnownAttributes[] = {
     {"velocity_gradient", OutputAttribute::kVelocityGradient},
 };
 
+/// Names of the numbers that effects and hosts keep: "Cd" of "Cd.x", "Cd.y" and "Cd.z".
+std::vector<std::string> kept_names(const Simulation& simulation) {
+  static constexpr const char* kOwn[] = {"id", "position", "velocity", "affine", "strain"};
+  std::vector<std::string> names;
+  for (const SetView& set : simulation.sets()) {
+    for (const ChannelView& channel : set.channels) {
+      std::string name = channel.name.substr(0, channel.name.find('.'));
+      const bool own = std::find(std::begin(kOwn), std::end(kOwn), name) != std::end(kOwn);
+      if (!own && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+    }
+  }
+  return names;
+}
+
 /// "a,b, c" into what points are to carry. Returns the name that is unknown, or nothing.
-std::string_view parse_attributes(std::string_view list, PointsWanted& wanted) {
+std::string_view parse_attributes(std::string_view list, const std::vector<std::string>& kept,
+                                  PointsWanted& wanted) {
+  const auto add = [](auto& to, const auto& what) {
+    if (std::find(to.begin(), to.end(), what) == to.end()) to.push_back(what);
+  };
   while (!list.empty()) {
     const std::size_t comma = std::min(list.find(','), list.size());
     std::string_view name = list.substr(0, comma);
@@ -53,11 +64,16 @@ std::string_view parse_attributes(std::string_view list, PointsWanted& wanted) {
     const auto* const end = std::end(kKnownAttributes);
     const auto* const known = std::find_if(std::begin(kKnownAttributes), end,
                                            [&](const KnownAttribute& k) { return k.name == name; });
-    if (known == end) return name.empty() ? "(nothing)" : name;
-    if (std::find(wanted.attributes.begin(), wanted.attributes.end(), known->attribute) ==
-        wanted.attributes.end())
-      wanted.attributes.push_back(known->attribute);
+    if (known != end) {
+      add(wanted.attributes, known->attribute);
+    } else if (std::find(kept.begin(), kept.end(), name) != kept.end()) {
+      add(wanted.channels, std::string(name));
+    } else {
+      return name.empty() ? "(nothing)" : name;
+    }
   }
+  const auto& all = wanted.attributes;
+  if (std::find(all.begin(), all.end(), OutputAttribute::kChannels) != all.end()) wanted.channels.clear();
   return {};
 }
 
@@ -68,6 +84,30 @@ repose_status with_points(repose_points handle, const Body& body) noexcept {
     const std::shared_ptr<PointsObject> object = points().find(handle.value);
     return object == nullptr ? no_handle("points") : body(*object);
   });
+}
+
+/// xx yy zz xy yz xz as the frame of the copy has them.
+void turn_tensor(int turn, float* t) {
+  if (turn == 0) return;
+  std::swap(t[1], t[2]);
+  std::swap(t[3], t[5]);
+  t[turn > 0 ? 3 : 5] *= -1.0f;
+  t[4] *= -1.0f;
+}
+
+/// By rows: those of x y z are turned, then those of each row.
+void turn_gradient(int turn, float* g) {
+  if (turn == 0) return;
+  float turned[9];
+  for (int row = 0; row < 3; ++row) {
+    const int from = row == 0 ? 0 : 3 - row;
+    const float sign = row == (turn > 0 ? 1 : 2) ? -1.0f : 1.0f;
+    const float* const g_row = g + 3 * from;
+    turned[3 * row] = sign * g_row[0];
+    turned[3 * row + 1] = sign * (turn > 0 ? -g_row[2] : g_row[2]);
+    turned[3 * row + 2] = sign * (turn > 0 ? g_row[1] : -g_row[1]);
+  }
+  std::copy_n(turned, 9, g);
 }
 
 /// x y z as the frame of the copy has them.
@@ -111,32 +151,10 @@ void copy(const PointsObject& object, std::string_view name, float* values) {
     if (attribute.name == name) from = &attribute.values;
   }
   std::copy(from->begin(), from->end(), values);
-}
-
-repose_status too_small(std::size_t needed) {
-  return fail({static_cast<ErrorKind>(REPOSE_ERROR_ARGUMENT),
-               "too little room: " + std::to_string(needed) + " numbers are to be copied", "capacity"});
-}
-
-void fill(const ChannelView& channel, const SetView& set, std::uint64_t generation, repose_view& view) {
-  view.name = channel.name.c_str();
-  view.data = channel.data;
-  view.count = set.count;
-  view.generation = generation;
-  view.type = channel.type == ChannelView::Type::kFloat    ? REPOSE_FLOAT
-              : channel.type == ChannelView::Type::kDouble ? REPOSE_DOUBLE
-                                                           : REPOSE_UINT32;
-  view.reserved = 0;
-}
-
-/// Runs body(set) on a set of an engine.
-template <class Body>
-repose_status with_set(repose_engine handle, size_t index, const Body& body) noexcept {
-  return with_engine(handle, false, [&](EngineObject& engine) -> repose_status {
-    const auto& sets = engine.views();
-    if (index >= sets.size()) return fail(REPOSE_ERROR_ARGUMENT, "there is no such set", "set");
-    return body(sets[index], engine.sets_of);
-  });
+  const bool tensor = name == "stress" || name == "elastic_strain";
+  for (std::size_t p = 0; tensor && p < cloud.size(); ++p) turn_tensor(object.turn, values + 6 * p);
+  for (std::size_t p = 0; name == "velocity_gradient" && p < cloud.size(); ++p)
+    turn_gradient(object.turn, values + 9 * p);
 }
 
 }  // namespace
@@ -154,12 +172,14 @@ repose_status repose_points_create(repose_engine handle, const repose_points_opt
     auto object = std::make_shared<PointsObject>();
     if (options != nullptr) {
       if (options->attributes != nullptr) {
-        const std::string_view unknown = parse_attributes(options->attributes, wanted);
+        const std::vector<std::string> kept = kept_names(*engine.simulation);
+        const std::string_view unknown = parse_attributes(options->attributes, kept, wanted);
+        std::string names;
+        for (const KnownAttribute& known : kKnownAttributes)
+          names += (names.empty() ? "" : ", ") + std::string(known.name);
+        for (const std::string& name : kept) names += ", " + name;
         if (!unknown.empty())
-          return fail({ErrorKind::kUsage,
-                       "no such attribute; choose among stress, pressure, elastic_strain, density, speed, age, "
-                       "shear_rate, inertial_number, plastic_strain, velocity_gradient, channels",
-                       std::string(unknown)});
+          return fail({ErrorKind::kUsage, "no such attribute; choose among " + names, std::string(unknown)});
         for (const OutputAttribute attribute : wanted.attributes) {
           const std::string lacks = engine.simulation->lacking(attribute);
           if (!lacks.empty()) return fail({ErrorKind::kUsage, lacks, "options.attributes"});
@@ -214,6 +234,22 @@ repose_status repose_points_read(repose_points handle, const char* attribute, fl
   });
 }
 
+repose_status repose_points_read_half(repose_points handle, const char* attribute, uint16_t* values,
+                                      size_t capacity) {
+  return with_points(handle, [&](const PointsObject& object) -> repose_status {
+    if (attribute == nullptr) return null_argument("attribute");
+    if (values == nullptr) return null_argument("values");
+    const int per_particle = components(object, attribute);
+    if (per_particle == 0) return unknown_attribute(object, attribute);
+    const std::size_t needed = static_cast<std::size_t>(per_particle) * object.cloud.size();
+    if (capacity < needed) return too_small(needed);
+    std::vector<float> whole(needed);
+    copy(object, attribute, whole.data());
+    std::transform(whole.begin(), whole.end(), values, half_of);
+    return REPOSE_OK;
+  });
+}
+
 repose_status repose_points_positions(repose_points handle, double* values, size_t capacity) {
   return with_points(handle, [&](const PointsObject& object) -> repose_status {
     if (values == nullptr) return null_argument("values");
@@ -233,97 +269,16 @@ repose_status repose_points_ids(repose_points handle, uint32_t* ids, size_t capa
   });
 }
 
-repose_status repose_set_count(repose_engine handle, size_t* count) {
-  return with_engine(handle, false, [&](EngineObject& engine) -> repose_status {
-    if (count == nullptr) return null_argument("count");
-    *count = engine.views().size();
-    return REPOSE_OK;
-  });
-}
-
-repose_status repose_set_info(repose_engine handle, size_t index, repose_set* info) {
-  return with_set(handle, index, [&](const SetView& set, std::uint64_t generation) -> repose_status {
-    if (const repose_status known = check(info, "set"); known != REPOSE_OK) return known;
-    info->name = set.name.c_str();
-    info->material = set.material.c_str();
-    info->particle_mass = set.particle_mass;
-    info->particle_volume = set.particle_volume;
-    info->count = set.count;
-    info->channels = set.channels.size();
-    info->begin = set.begin;
-    info->blocks = set.blocks;
-    info->generation = generation;
-    return REPOSE_OK;
-  });
-}
-
-repose_status repose_channel(repose_engine handle, size_t set, size_t index, repose_view* view) {
-  return with_set(handle, set, [&](const SetView& of, std::uint64_t generation) -> repose_status {
-    if (const repose_status known = check(view, "view"); known != REPOSE_OK) return known;
-    if (index >= of.channels.size()) return fail(REPOSE_ERROR_ARGUMENT, "there is no such channel", "index");
-    fill(of.channels[index], of, generation, *view);
-    return REPOSE_OK;
-  });
-}
-
-repose_status repose_channel_named(repose_engine handle, size_t set, const char* name, repose_view* view) {
-  return with_set(handle, set, [&](const SetView& of, std::uint64_t generation) -> repose_status {
-    if (name == nullptr) return null_argument("name");
-    if (const repose_status known = check(view, "view"); known != REPOSE_OK) return known;
-    std::string names;
-    for (const ChannelView& channel : of.channels) {
-      if (channel.name == name) {
-        fill(channel, of, generation, *view);
-        return REPOSE_OK;
-      }
-      names += (names.empty() ? "" : ", ") + channel.name;
-    }
-    return fail({ErrorKind::kUsage, "no such channel; this set has " + names, name});
-  });
-}
-
-repose_status repose_view_check(repose_engine handle, uint64_t generation) {
-  return guarded([&]() -> repose_status {
-    const std::shared_ptr<EngineObject> engine = engines().find(handle.value);
-    if (engine == nullptr) return no_handle("engine");
-    if (engine->generation.load() == generation) return REPOSE_OK;
-    return fail(REPOSE_ERROR_STALE, "the engine has gone on since the view was made; make it anew",
-                "generation");
-  });
-}
-
-repose_status repose_block_corners(repose_engine handle, double* corners, size_t capacity, size_t* count) {
-  return with_engine(handle, false, [&](const EngineObject& engine) -> repose_status {
-    if (count == nullptr && corners == nullptr) return null_argument("count");
-    const std::vector<Triple> all = engine.simulation->block_corners();
-    if (count != nullptr) *count = all.size();
-    if (corners == nullptr) return REPOSE_OK;
-    if (capacity < 3 * all.size()) return too_small(3 * all.size());
-    for (std::size_t b = 0; b < all.size(); ++b) std::copy(all[b].begin(), all[b].end(), corners + 3 * b);
-    return REPOSE_OK;
-  });
-}
-
-repose_status repose_measurement_count(repose_engine handle, size_t* count) {
-  return with_engine(handle, false, [&](EngineObject& engine) -> repose_status {
-    if (count == nullptr) return null_argument("count");
-    engine.measurements = engine.simulation->measurements();
-    *count = engine.measurements.size();
-    return REPOSE_OK;
-  });
-}
-
-repose_status repose_measurement(repose_engine handle, size_t index, repose_measurement_info* measurement) {
-  return with_engine(handle, false, [&](EngineObject& engine) -> repose_status {
-    if (const repose_status known = check(measurement, "measurement"); known != REPOSE_OK) return known;
-    engine.measurements = engine.simulation->measurements();
-    if (index >= engine.measurements.size())
-      return fail(REPOSE_ERROR_ARGUMENT, "there is no such measurement", "index");
-    const Measurement& of = engine.measurements[index];
-    measurement->probe = of.probe.c_str();
-    measurement->quantity = of.quantity.c_str();
-    measurement->unit = of.unit.c_str();
-    measurement->value = of.value;
-    return REPOSE_OK;
+repose_status repose_points_write(repose_points handle, const char* path) {
+  return with_points(handle, [&](const PointsObject& object) -> repose_status {
+    if (path == nullptr) return null_argument("path");
+    const std::string_view name = path;
+    const auto write = name.ends_with(".vdb")   ? write_vdb_points
+                       : name.ends_with(".ply") ? write_ply
+                       : name.ends_with(".vtp") ? write_vtp
+                                                : nullptr;
+    if (write == nullptr) return fail({ErrorKind::kUsage, "must end in .vdb, .ply or .vtp", path});
+    const auto written = write(object.cloud, path);
+    return written ? REPOSE_OK : fail(written.error());
   });
 }

@@ -1,4 +1,5 @@
 // Repose: engines in Python. The interpreter's lock is let go while the library works; callbacks take it again.
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -29,99 +30,6 @@ std::unique_ptr<Engine> make_engine(const repose::Scene& scene, int threads, con
   return std::make_unique<Engine>(scene, options, std::move(tell));
 }
 
-/// A new array that owns its numbers: `per_particle` of each, in rows where they are several.
-template <class T>
-py::array_t<T> array_of(std::size_t count, int per_particle) {
-  if (per_particle == 1) return py::array_t<T>(static_cast<py::ssize_t>(count));
-  return py::array_t<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(per_particle)});
-}
-
-py::dict points(const Engine& engine, const std::vector<std::string>& attributes, const std::string& up,
-                bool mass) {
-  repose_points_options options = repose_points_options_init();
-  std::string list;
-  for (const std::string& name : attributes) list += (list.empty() ? "" : ",") + name;
-  options.attributes = list.c_str();
-  options.mass = mass ? 1 : 0;
-  if (up != "scene" && up != "y" && up != "z") throw py::value_error("up: choose among scene, y, z");
-  options.up = up == "y" ? REPOSE_UP_Y : up == "z" ? REPOSE_UP_Z : REPOSE_UP_OF_SCENE;
-  std::optional<repose::Points> made;
-  {
-    const py::gil_scoped_release released;
-    made.emplace(engine.points(options));
-  }
-  const std::size_t count = made->size();
-  py::dict arrays;
-  auto positions = array_of<double>(count, 3);
-  auto ids = array_of<std::uint32_t>(count, 1);
-  if (count > 0) {
-    repose::detail::check(repose_points_positions(made->get(), positions.mutable_data(), 3 * count));
-    repose::detail::check(repose_points_ids(made->get(), ids.mutable_data(), count));
-  }
-  arrays["P"] = positions;
-  arrays["id"] = ids;
-  std::vector<std::string> names{"v", "pscale"};
-  if (mass) names.push_back("mass");
-  for (const std::string& name : attributes) {
-    if (name != "channels") {
-      names.push_back(name);
-      continue;
-    }
-    // Each number that an effect keeps is there under its own name.
-    for (std::size_t set = 0; set < engine.set_count(); ++set) {
-      const repose_set info = engine.set(set);
-      for (std::size_t k = 0; k < info.channels; ++k) {
-        repose_view view = repose_view_init();
-        repose::detail::check(repose_channel(engine.get(), set, k, &view));
-        std::int32_t components = 0;
-        if (repose_points_components(made->get(), view.name, &components) == REPOSE_OK)
-          names.push_back(view.name);
-      }
-    }
-  }
-  for (const std::string& name : names) {
-    const int components = made->components(name);
-    auto values = array_of<float>(count, components);
-    if (count > 0) made->read(name, {values.mutable_data(), static_cast<std::size_t>(values.size())});
-    arrays[py::str(name)] = values;
-  }
-  return arrays;
-}
-
-/// An array over the engine's own numbers, which keeps the engine alive and cannot be written.
-py::array view(const py::object& self, std::size_t set, const std::string& name) {
-  repose_view view = repose_view_init();
-  repose::detail::check(repose_channel_named(self.cast<const Engine&>().get(), set, name.c_str(), &view));
-  const py::dtype type = view.type == REPOSE_FLOAT    ? py::dtype::of<float>()
-                         : view.type == REPOSE_DOUBLE ? py::dtype::of<double>()
-                                                      : py::dtype::of<std::uint32_t>();
-  py::array array(type, static_cast<py::ssize_t>(view.count), view.data, self);
-  array.attr("flags").attr("writeable") = false;
-  return array;
-}
-
-py::list sets(const Engine& engine) {
-  py::list list;
-  for (std::size_t k = 0; k < engine.set_count(); ++k) {
-    const repose_set set = engine.set(k);
-    py::list channels;
-    for (std::size_t c = 0; c < set.channels; ++c) {
-      repose_view view = repose_view_init();
-      repose::detail::check(repose_channel(engine.get(), k, c, &view));
-      channels.append(view.name);
-    }
-    py::dict entry;
-    entry["name"] = set.name;
-    entry["material"] = set.material;
-    entry["particle_mass"] = set.particle_mass;
-    entry["particle_volume"] = set.particle_volume;
-    entry["count"] = set.count;
-    entry["channels"] = channels;
-    list.append(entry);
-  }
-  return list;
-}
-
 void move_collider(Engine& engine, const std::string& collider, const Array<double>& matrix, double seconds) {
   if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
     throw py::value_error("matrix: needs the shape (4, 4)");
@@ -141,12 +49,38 @@ void deform_collider(Engine& engine, const std::string& collider, const Array<do
   engine.deform_collider(collider, corners, faces, at_once);
 }
 
+std::array<double, 3> triple(const std::optional<std::array<double, 3>>& given) {
+  return given.value_or(std::array<double, 3>{});
+}
+
+void drive_collider(Engine& engine, const std::string& collider,
+                    const std::optional<std::array<double, 3>>& velocity,
+                    const std::optional<std::array<double, 3>>& spin,
+                    const std::optional<std::array<double, 3>>& center) {
+  if (!velocity && !spin) {
+    engine.release_collider(collider);
+  } else {
+    engine.drive_collider(collider, triple(velocity), triple(spin), triple(center));
+  }
+}
+
 std::uint32_t add_particles(Engine& engine, const std::string& emitter, const Array<double>& positions,
-                            const std::optional<Array<float>>& velocities) {
+                            const std::optional<Array<float>>& velocities,
+                            const std::map<std::string, Array<float>>& channels) {
   const auto places = rows_of_three(positions, "positions");
   const auto speeds = velocities ? rows_of_three(*velocities, "velocities") : repose::Span<const float>();
+  Engine::Values values;
+  for (const auto& [channel, numbers] : channels) values.emplace_back(channel, all_of(numbers));
   const py::gil_scoped_release released;
-  return engine.add_particles(emitter, places, speeds);
+  return engine.add_particles(emitter, places, speeds, values);
+}
+
+std::size_t set_values(Engine& engine, const std::string& channel, const Array<std::uint32_t>& ids,
+                       const Array<float>& values) {
+  const auto numbers = all_of(values);
+  const auto of = all_of(ids);
+  const py::gil_scoped_release released;
+  return engine.set_values(channel, of, numbers);
 }
 
 py::dict contact(const Engine& engine, const std::string& collider) {
@@ -212,10 +146,14 @@ void define_reports(py::module_& module) {
 void define_engine(py::module_& module) {
   define_reports(module);
   using Release = py::call_guard<py::gil_scoped_release>;
-  py::class_<Engine>(module, "Engine", "A simulation.")
+  py::class_<Engine> engine(module, "Engine", "A simulation.");
+  define_reading(engine);
+  engine
       .def(py::init(&make_engine), py::arg("scene"), py::arg("threads") = 0, py::arg("target") = "best",
            py::arg("memory_limit") = 0.0, py::arg("log_contacts") = false, py::arg("log") = py::none(),
-           "Makes it: builds solids, fills bodies. threads 0: all; memory_limit in bytes, 0: 85 % of the "
+           "Makes it: builds solids, fills bodies. threads 0: all, -1: the arena of oneTBB that the caller is "
+           "in; "
+           "memory_limit in bytes, 0: 85 % of the "
            "machine's; "
            "log(level, message) is told of warnings.")
       .def("advance_frame", &Engine::advance_frame, Release(), "To the end of the frame at hand.")
@@ -256,27 +194,6 @@ void define_engine(py::module_& module) {
       .def("state", &state, "The state as bytes.")
       .def("restore", &restore, py::arg("state"), "Goes on from bytes of state().")
       .def(
-          "points", &points, py::arg("attributes") = std::vector<std::string>(), py::arg("up") = "scene",
-          py::arg("mass") = false,
-          "Copies of P (m), v (m/s), id, pscale (m) and the attributes, in the order of ids: a dict of arrays.")
-      .def("sets", &sets,
-           "Names, figures and channels of the sets of particles, one for each body and emitter.")
-      .def("view", &view, py::arg("set"), py::arg("channel"),
-           "The engine's own numbers, without a copy and not to be written. They are valid until the next call "
-           "that "
-           "advances, loads, changes, adds or removes; info.generation is then another one.")
-      .def(
-          "block_corners",
-          [](const Engine& engine) {
-            const auto corners = engine.block_corners();
-            auto array = array_of<double>(corners.size(), 3);
-            for (std::size_t b = 0; b < corners.size(); ++b)
-              std::copy(corners[b].begin(), corners[b].end(),
-                        array.mutable_data(static_cast<py::ssize_t>(b), 0));
-            return array;
-          },
-          "Where blocks lie, m, shape (blocks, 3).")
-      .def(
           "measurements",
           [](const Engine& engine) {
             py::list list;
@@ -293,8 +210,18 @@ void define_engine(py::module_& module) {
            "To vertices (n, 3), m, by the end of the stretch of 1/rate s that begins now.")
       .def("contact", &contact, py::arg("collider"),
            "Mean force (N) and moment (N m) of the material on a collider over the last call that advanced.")
+      .def("drive_collider", &drive_collider, py::arg("collider"), py::arg("velocity") = py::none(),
+           py::arg("spin") = py::none(), py::arg("center") = py::none(),
+           "Its surface moves with velocity + spin x (x - center), in m/s, rad/s and m, whatever its poses "
+           "come to; "
+           "without velocity and spin by its poses again.")
       .def("add_particles", &add_particles, py::arg("emitter"), py::arg("positions"),
-           py::arg("velocities") = py::none(), "Particles begin at (n, 3), m; returns the id of the first.")
+           py::arg("velocities") = py::none(), py::arg("channels") = std::map<std::string, Array<float>>(),
+           "Particles begin at (n, 3), m, with numbers of the scene's channels by name, (n,) or (n, "
+           "components); "
+           "returns the id of the first.")
+      .def("set_values", &set_values, py::arg("channel"), py::arg("ids"), py::arg("values"),
+           "Other numbers of a channel for particles of ids; returns how many of them there were.")
       .def(
           "remove_particles",
           [](Engine& engine, const Array<std::uint32_t>& ids) {

@@ -25,8 +25,22 @@ repose::Span<const T> rows_of_three(const Array<T>& array, const char* name) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
+/// All numbers of an array, row by row.
+template <class T>
+repose::Span<const T> all_of(const Array<T>& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// A new array that owns its numbers: `per_particle` of each, in rows where they are several.
+template <class T>
+py::array_t<T> array_of(std::size_t count, int per_particle) {
+  if (per_particle == 1) return py::array_t<T>(static_cast<py::ssize_t>(count));
+  return py::array_t<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(per_particle)});
+}
+
 /// JSON of a value: text stays what it is, all else goes through json.dumps.
 std::string json_of(const py::object& value);
 
 void define_scene(py::module_& module);
 void define_engine(py::module_& module);
+void define_reading(py::class_<repose::Engine>& engine);

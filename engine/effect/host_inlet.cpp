@@ -35,7 +35,8 @@ std::vector<std::string> HostInlets<Real>::names() const {
 
 template <class Real>
 void HostInlets<Real>::add(const Inlet& inlet, std::size_t count, const double* positions,
-                           const float* velocities, State<Real>& state, ParticleEdit<Real>& edit) const {
+                           const float* velocities, State<Real>& state, ParticleEdit<Real>& edit,
+                           const std::function<void(ParticleSet<Real>&)>& then) const {
   SetEdit<Real>& added = edit.add(state, inlet.place.set, count);
   const auto place = [positions](std::size_t p) {
     return Vec3(positions[3 * p], positions[3 * p + 1], positions[3 * p + 2]);
@@ -51,6 +52,7 @@ void HostInlets<Real>::add(const Inlet& inlet, std::size_t count, const double* 
   Newcomers<Real> newcomers{
       added.newcomers, 0, count, inlet.description, surroundings_, place, [now](std::size_t) { return now; }};
   initialize_(newcomers);
+  then(added.newcomers);
   state.ledger.emitted[inlet.place.entry] += count;
 }
 

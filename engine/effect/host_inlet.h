@@ -37,8 +37,10 @@ class HostInlets {
   std::vector<std::string> names() const;
 
   /// `count` particles begin; positions (m) and velocities (m/s) are x y z of each, `velocities` may be null.
+  /// `then` has the last word on what they keep.
   void add(const Inlet& inlet, std::size_t count, const double* positions, const float* velocities,
-           State<Real>& state, ParticleEdit<Real>& edit) const;
+           State<Real>& state, ParticleEdit<Real>& edit,
+           const std::function<void(ParticleSet<Real>& newcomers)>& then) const;
   /// The particles of ids that there are end. Returns how many.
   std::size_t remove(std::vector<std::uint32_t> ids, State<Real>& state, ParticleEdit<Real>& edit) const;
 

@@ -1,8 +1,11 @@
-// Repose: what hosts do between calls that advance: views of channels, solids that they lead, particles that
-// they begin and end, and another scene for the same state.
+// Repose: what hosts do between calls that advance: solids that they lead, particles that they begin and end,
+// numbers that they keep with them, and another scene for the same state.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "engine/base/memory.h"
+#include "engine/compiler/figures.h"
 #include "engine/effect/host_inlet.h"
 #include "engine/simulation/memory.h"
 #include "engine/simulation/simulation_of.h"
@@ -23,30 +26,6 @@ std::string choices(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "\"" : ", \"") + name + "\"";
   return text.empty() ? "there is none" : "choose among " + text;
-}
-
-template <class Real>
-constexpr ChannelView::Type kType = sizeof(Real) == sizeof(float) ? ChannelView::Type::kFloat
-                                                                  : ChannelView::Type::kDouble;
-
-template <class Real>
-std::vector<ChannelView> channels_of(const ParticleSet<Real>& set) {
-  static constexpr const char* kAxes[] = {"x", "y", "z"};
-  static constexpr const char* kSymmetric[] = {"xx", "xy", "xz", "yy", "yz", "zz"};
-  static constexpr const char* kFull[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
-  std::vector<ChannelView> list;
-  const auto add = [&](const std::string& name, const AlignedArray<Real>& values) {
-    list.push_back({name, kType<Real>, values.data()});
-  };
-  list.push_back({"id", ChannelView::Type::kUint32, set.id.data()});
-  for (std::size_t k = 0; k < 3; ++k) add(std::string("position.") + kAxes[k], set.position[k]);
-  for (std::size_t k = 0; k < 3; ++k) add(std::string("velocity.") + kAxes[k], set.velocity[k]);
-  for (std::size_t k = 0; set.keeps_affine && k < kAffineComponents; ++k)
-    add(std::string("affine.") + kFull[k], set.affine[k]);
-  for (std::size_t k = 0; k < kStrainComponents; ++k)
-    add(std::string("strain.") + kSymmetric[k], set.strain[k]);
-  for (const auto& channel : set.extra) add(channel.name, channel.values);
-  return list;
 }
 
 /// A placement, where a pose is one of a rigid body that stays in the plane of plane strain.
@@ -103,25 +82,6 @@ Result<TriangleMesh> mesh_of(std::span<const double> vertices, std::span<const s
 }  // namespace
 
 template <class Real>
-std::vector<SetView> SimulationOf<Real>::sets() const {
-  std::vector<SetView> list;
-  for (const ParticleSet<Real>& set : state_.sets) {
-    const std::string& material = scene_.materials[static_cast<std::size_t>(set.material)].name;
-    list.push_back({set.name, material, set.particle_mass, set.particle_volume, set.count, channels_of(set),
-                    set.begin.data(), state_.grid.occupied_blocks().size()});
-  }
-  return list;
-}
-
-template <class Real>
-std::vector<Triple> SimulationOf<Real>::block_corners() const {
-  std::vector<Triple> corners(state_.grid.occupied_blocks().size());
-  for (std::size_t b = 0; b < corners.size(); ++b)
-    corners[b] = to_triple(state_.world(state_.grid.occupied_coordinates(b), {0, 0, 0}));
-  return corners;
-}
-
-template <class Real>
 Result<const Solid*> SimulationOf<Real>::find_solid(const std::string& name) const {
   std::vector<std::string> names;
   for (const Solid& solid : solids_) {
@@ -165,9 +125,62 @@ Result<void> SimulationOf<Real>::deform_solid(const std::string& name, std::span
 }
 
 template <class Real>
+Result<void> SimulationOf<Real>::drive_solid(const std::string& name,
+                                             const std::optional<SurfaceVelocity>& velocity) {
+  const auto solid = find_solid(name);
+  if (!solid) return solid.error();
+  if ((*solid)->led_motion == nullptr)
+    return usage("is not moved by the host; say so before the simulation is made", name);
+  std::optional<Drive> drive;
+  if (velocity) {
+    drive = Drive{to_vec3(velocity->velocity), to_vec3(velocity->spin), to_vec3(velocity->center)};
+    if (!drive->velocity.allFinite() || !drive->spin.allFinite() || !drive->center.allFinite())
+      return usage("needs a velocity, a spin and a centre that are finite", name);
+  }
+  (*solid)->led_motion->drive(drive);
+  return {};
+}
+
+namespace {
+
+std::vector<HostChannel> channels_of(const Scene& scene) {
+  std::vector<HostChannel> list;
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(effect)>, HostChannels>) list = effect.list;
+  });
+  return list;
+}
+
+/// The channel of the scene that numbers are for, where they are as many as go with particles.
+Result<HostChannel> find_channel(const Scene& scene, const ChannelValues& values, std::size_t particles) {
+  std::vector<std::string> names;
+  for (const HostChannel& channel : channels_of(scene)) {
+    names.push_back(channel.name);
+    if (channel.name != values.channel) continue;
+    if (values.values.size() == particles * static_cast<std::size_t>(channel.components)) return channel;
+    return usage("has " + std::to_string(channel.components) + " numbers per particle, and " +
+                     std::to_string(values.values.size()) + " were given for " + std::to_string(particles) +
+                     " particles",
+                 values.channel);
+  }
+  return usage("no such channel in the scene's \"channels\"; " + choices(names), values.channel);
+}
+
+}  // namespace
+
+template <class Real>
+std::size_t SimulationOf<Real>::channel_components(const std::string& name) const {
+  for (const HostChannel& channel : channels_of(scene_)) {
+    if (channel.name == name) return static_cast<std::size_t>(channel.components);
+  }
+  return 0;
+}
+
+template <class Real>
 Result<std::uint32_t> SimulationOf<Real>::add_particles(const std::string& emitter,
                                                         std::span<const double> positions,
-                                                        std::span<const float> velocities) {
+                                                        std::span<const float> velocities,
+                                                        std::span<const ChannelValues> channels) {
   const HostInlets<Real>* const inlets = stepper_->plan().tables.template get<Real>(kHostInlets);
   const auto* const inlet = inlets == nullptr ? nullptr : inlets->find(emitter);
   if (inlet == nullptr) {
@@ -182,11 +195,37 @@ Result<std::uint32_t> SimulationOf<Real>::add_particles(const std::string& emitt
     return usage("has a position that is not finite, or beyond 1e9 cells from the origin", emitter);
   if (!std::all_of(velocities.begin(), velocities.end(), [](float v) { return std::isfinite(v); }))
     return usage("has a velocity that is not finite", emitter);
+  const std::size_t count = positions.size() / 3;
+  std::vector<HostChannel> kept;
+  for (const ChannelValues& values : channels) {
+    auto found = find_channel(scene_, values, count);
+    if (!found) return found.error();
+    kept.push_back(*found);
+  }
+  const auto keep = [&](ParticleSet<Real>& newcomers) {
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      const auto n = static_cast<std::size_t>(kept[k].components);
+      for (std::size_t lane = 0; lane < n; ++lane) {
+        Real* const to = newcomers.extra[newcomers.extra_index(kept[k].component(lane))].values.data();
+        for (std::size_t p = 0; p < count; ++p) to[p] = static_cast<Real>(channels[k].values[n * p + lane]);
+      }
+    }
+  };
+  // Newcomers stand aside before they are among the others, and sets that grow take an eighth more than they
+  // need.
+  const double limit = stepper_->plan().memory.limit;
+  const double needed = static_cast<double>(memory().total()) +
+                        2.125 * static_cast<double>(count) * static_cast<double>(bytes_per_particle(scene_));
+  if (needed > limit)
+    return Error{ErrorKind::kMemory,
+                 "needs about " + bytes_text(needed) + " with " + std::to_string(count) +
+                     " more particles, and " + bytes_text(limit) + " may be used",
+                 emitter};
   const auto first = static_cast<std::uint32_t>(state_.ledger.next_id);
   auto added = unless_memory_ends([&] {
     return stepper_->edit_particles(state_, [&](State<Real>& state, ParticleEdit<Real>& edit) {
-      inlets->add(*inlet, positions.size() / 3, positions.data(),
-                  velocities.empty() ? nullptr : velocities.data(), state, edit);
+      inlets->add(*inlet, count, positions.data(), velocities.empty() ? nullptr : velocities.data(), state,
+                  edit, keep);
     });
   });
   if (!added) return refuse(added.error());
@@ -206,6 +245,34 @@ Result<std::size_t> SimulationOf<Real>::remove_particles(std::span<const std::ui
   });
   if (!done) return refuse(done.error());
   return removed;
+}
+
+template <class Real>
+Result<std::size_t> SimulationOf<Real>::set_values(const ChannelValues& values,
+                                                   std::span<const std::uint32_t> ids) {
+  const auto channel = find_channel(scene_, values, ids.size());
+  if (!channel) return channel.error();
+  std::vector<std::uint32_t> order(ids.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    if (ids[order[k - 1]] == ids[order[k]])
+      return usage("has the id " + std::to_string(ids[order[k]]) + " twice", values.channel);
+  }
+  const auto n = static_cast<std::size_t>(channel->components);
+  std::size_t found = 0;
+  for (ParticleSet<Real>& set : state_.sets) {
+    const std::size_t first = set.extra_index(channel->component(0));
+    for (std::size_t p = 0; p < set.count; ++p) {
+      const auto at = std::lower_bound(order.begin(), order.end(), set.id[p],
+                                       [&](std::uint32_t row, std::uint32_t id) { return ids[row] < id; });
+      if (at == order.end() || ids[*at] != set.id[p]) continue;
+      for (std::size_t lane = 0; lane < n; ++lane)
+        set.extra[first + lane].values[p] = static_cast<Real>(values.values[n * *at + lane]);
+      ++found;
+    }
+  }
+  return found;
 }
 
 template <class Real>
@@ -246,7 +313,11 @@ Result<void> SimulationOf<Real>::change(const Scene& scene) {
     }
     compiled->plan.memory = writing_memory(scene);
     compiled->plan.memory.limit = limit;
-    auto stepper = std::make_unique<Stepper<Real>>(std::move(compiled->plan), threads(), &wish_);
+    // Within the arena of the one before: the caller's own may be another now than it was.
+    std::unique_ptr<Stepper<Real>> stepper;
+    stepper_->threads().for_each(1, [&](std::size_t) {
+      stepper = std::make_unique<Stepper<Real>>(std::move(compiled->plan), options_.threads, &wish_);
+    });
     // What held still under the other scene may not do so under this one.
     for (std::size_t occupied = 0; occupied < state_.rest.asleep.size(); ++occupied) state_.rest.wake(occupied);
     if (auto follows = stepper->follow(state_); !follows) {
@@ -262,17 +333,20 @@ Result<void> SimulationOf<Real>::change(const Scene& scene) {
   });
 }
 
-#define REPOSE_INSTANTIATE(Real)                                                                      \
-  template std::vector<SetView> SimulationOf<Real>::sets() const;                                     \
-  template std::vector<Triple> SimulationOf<Real>::block_corners() const;                             \
-  template Result<const Solid*> SimulationOf<Real>::find_solid(const std::string&) const;             \
-  template Result<void> SimulationOf<Real>::move_solid(const std::string&, const Pose&, double);      \
-  template Result<void> SimulationOf<Real>::deform_solid(const std::string&, std::span<const double>, \
-                                                         std::span<const std::int32_t>, bool);        \
-  template Result<std::uint32_t> SimulationOf<Real>::add_particles(                                   \
-      const std::string&, std::span<const double>, std::span<const float>);                           \
-  template Result<std::size_t> SimulationOf<Real>::remove_particles(std::span<const std::uint32_t>);  \
-  template Result<ContactFigures> SimulationOf<Real>::contact(const std::string&) const;              \
+#define REPOSE_INSTANTIATE(Real)                                                                            \
+  template Result<const Solid*> SimulationOf<Real>::find_solid(const std::string&) const;                   \
+  template std::size_t SimulationOf<Real>::channel_components(const std::string&) const;                    \
+  template Result<void> SimulationOf<Real>::move_solid(const std::string&, const Pose&, double);            \
+  template Result<void> SimulationOf<Real>::drive_solid(const std::string&,                                 \
+                                                        const std::optional<SurfaceVelocity>&);             \
+  template Result<void> SimulationOf<Real>::deform_solid(const std::string&, std::span<const double>,       \
+                                                         std::span<const std::int32_t>, bool);              \
+  template Result<std::uint32_t> SimulationOf<Real>::add_particles(                                         \
+      const std::string&, std::span<const double>, std::span<const float>, std::span<const ChannelValues>); \
+  template Result<std::size_t> SimulationOf<Real>::set_values(const ChannelValues&,                         \
+                                                              std::span<const std::uint32_t>);              \
+  template Result<std::size_t> SimulationOf<Real>::remove_particles(std::span<const std::uint32_t>);        \
+  template Result<ContactFigures> SimulationOf<Real>::contact(const std::string&) const;                    \
   template Result<void> SimulationOf<Real>::change(const Scene&);
 REPOSE_INSTANTIATE(float)
 REPOSE_INSTANTIATE(double)

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,19 @@ struct SetView {
 struct Pose {
   std::array<Triple, 3> rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< rows
   Triple translation{};                                               ///< m
+};
+
+/// Numbers of the scene's "channels" for some particles: as many of each as the channel has components.
+struct ChannelValues {
+  std::string channel;
+  std::span<const float> values;
+};
+
+/// A velocity of every point x of a surface: velocity + spin x (x - center).
+struct SurfaceVelocity {
+  Triple velocity{};  ///< m/s
+  Triple spin{};      ///< rad/s
+  Triple center{};    ///< m
 };
 
 /// Of the material on a collider, mean over a time.

@@ -310,10 +310,9 @@ Result<std::unique_ptr<Simulation>> create_of(const Scene& scene, const Simulati
   if (!compiled) return compiled.error();
   compiled->plan.memory = writing_memory(scene);
   compiled->plan.memory.limit = limit;
-  const int threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  auto simulation =
-      std::make_unique<SimulationOf<Real>>(scene, options, std::move(*compiled), std::max(1, threads));
+  SimulationOptions chosen = options;
+  if (options.threads == 0) chosen.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  auto simulation = std::make_unique<SimulationOf<Real>>(scene, chosen, std::move(*compiled));
   if (auto begun = simulation->begin(); !begun) return begun.error();
   return std::unique_ptr<Simulation>(std::move(simulation));
 }

@@ -30,9 +30,10 @@ struct Scene;  // engine/scene/scene.h, for hosts that fill one by hand; engine/
 struct ChannelHash;      // engine/state/difference.h
 struct StateDifference;  // likewise
 struct Solid;            // engine/effect/solid.h
+struct DenseVolume;      // engine/io/dense_volume.h
 
 struct SimulationOptions {
-  int threads = 0;  ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many as the machine has; kThreadsOfCaller: the arena that create() is called in
   Target target = best_target();
   bool allow_outside_paths = false;
   /// Bytes that the simulation may take, with what writing its frames takes; 0: 85 % of the machine's memory.
@@ -128,6 +129,12 @@ class Simulation {
   /// Where the corners of the blocks lie that SetView::begin speaks of, m.
   virtual std::vector<Triple> block_corners() const = 0;
 
+  /// The surface as a box of signed distances, and the fog as one of density and velocity. A voxel or radius of
+  /// 0, and a smoothing below 0, are what the scene's output says, or its defaults; lengths in m. Errors: 64;
+  /// 78 where the box would not fit into the memory limit.
+  virtual Result<DenseVolume> surface(double voxel, double radius, int smoothing) const = 0;
+  virtual Result<DenseVolume> fog(double voxel) const = 0;
+
   /// A collider that a host leads (Lead::kPose) goes to a pose within `seconds`, from where it stands; with
   /// none it stands there at once. Errors: 64 no such collider, not led, or no pose of a rigid body.
   virtual Result<void> move_solid(const std::string& name, const Pose& pose, double seconds) = 0;
@@ -137,10 +144,21 @@ class Simulation {
   virtual Result<void> deform_solid(const std::string& name, std::span<const double> vertices,
                                     std::span<const std::int32_t> triangles, bool at_once) = 0;
 
+  /// The surface of a collider that a host leads by poses moves as it says, or without a velocity as its poses
+  /// come to; where it stands is the poses' alone. Error 64: no such collider, not led so, or not finite.
+  virtual Result<void> drive_solid(const std::string& name, const std::optional<SurfaceVelocity>& velocity) = 0;
+
   /// Particles begin at an emitter of type "host", at positions (x y z of each, m) with velocities (likewise,
-  /// m/s; or none: at rest). Returns the id of the first; the others follow. Errors: 64, 78.
+  /// m/s; or none: at rest) and numbers of channels, where those that are not named begin as the scene says.
+  /// Returns the id of the first; the others follow. Errors: 64, 78.
   virtual Result<std::uint32_t> add_particles(const std::string& emitter, std::span<const double> positions,
-                                              std::span<const float> velocities) = 0;
+                                              std::span<const float> velocities,
+                                              std::span<const ChannelValues> channels) = 0;
+  /// Numbers per particle of one of the scene's "channels"; 0 where there is none of the name.
+  virtual std::size_t channel_components(const std::string& channel) const = 0;
+  /// Other numbers of a channel for particles of ids. Returns how many there were. Error 64: no such channel,
+  /// too few or too many numbers, or an id that is said twice.
+  virtual Result<std::size_t> set_values(const ChannelValues& values, std::span<const std::uint32_t> ids) = 0;
   /// Particles of ids end; returns how many there were. Error 64: the scene has no emitter of type "host".
   virtual Result<std::size_t> remove_particles(std::span<const std::uint32_t> ids) = 0;
 

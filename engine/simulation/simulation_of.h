@@ -7,6 +7,8 @@
 #include <new>
 
 #include "engine/compiler/compiler.h"
+#include "engine/effect/host_channels.h"
+#include "engine/io/dense_volume.h"
 #include "engine/plan/contact_log.h"
 #include "engine/plan/frame_clock.h"
 #include "engine/scene/attributes.h"
@@ -22,14 +24,14 @@ namespace repose {
 template <class Real>
 class SimulationOf final : public Simulation {
  public:
-  SimulationOf(const Scene& scene, const SimulationOptions& options, CompiledScene<Real> compiled, int threads)
+  SimulationOf(const Scene& scene, const SimulationOptions& options, CompiledScene<Real> compiled)
       : scene_(scene),
         options_(options),
         integrator_(std::move(compiled.integrator)),
         clock_(clock_of(scene.time)),
         solids_(std::move(compiled.solids)),
         state_(std::move(compiled.state)),
-        stepper_(std::make_unique<Stepper<Real>>(std::move(compiled.plan), threads, &wish_)) {}
+        stepper_(std::make_unique<Stepper<Real>>(std::move(compiled.plan), options.threads, &wish_)) {}
 
   /// Brings the state into order, makes room for steps, and looks at where bodies start. Error 78.
   Result<void> begin();
@@ -80,11 +82,17 @@ class SimulationOf final : public Simulation {
 
   std::vector<SetView> sets() const override;
   std::vector<Triple> block_corners() const override;
+  Result<DenseVolume> surface(double voxel, double radius, int smoothing) const override;
+  Result<DenseVolume> fog(double voxel) const override;
   Result<void> move_solid(const std::string& name, const Pose& pose, double seconds) override;
   Result<void> deform_solid(const std::string& name, std::span<const double> vertices,
                             std::span<const std::int32_t> triangles, bool at_once) override;
+  Result<void> drive_solid(const std::string& name, const std::optional<SurfaceVelocity>& velocity) override;
   Result<std::uint32_t> add_particles(const std::string& emitter, std::span<const double> positions,
-                                      std::span<const float> velocities) override;
+                                      std::span<const float> velocities,
+                                      std::span<const ChannelValues> channels) override;
+  std::size_t channel_components(const std::string& channel) const override;
+  Result<std::size_t> set_values(const ChannelValues& values, std::span<const std::uint32_t> ids) override;
   Result<std::size_t> remove_particles(std::span<const std::uint32_t> ids) override;
   Result<ContactFigures> contact(const std::string& name) const override;
   Result<void> change(const Scene& scene) override;
@@ -114,6 +122,7 @@ class SimulationOf final : public Simulation {
   void sum_contacts(double dt);
   Result<void> load(std::istream& bytes, const std::string& name);
   Result<const Solid*> find_solid(const std::string& name) const;
+  double room_left() const;
 
   Scene scene_;
   SimulationOptions options_;

@@ -63,6 +63,34 @@ assert one.contact("wall")["force"][0] < 0
 one.change("gravity.acceleration", [0, 0, 0])
 one.advance_seconds(0.5 / 48)
 
+# Numbers of the host's own, and copies as it wants them.
+own = repose.Engine(repose.Scene.from_text(SCENE).set("channels", [{"name": "Cd", "components": 3}, {"name": "grain"}]),
+                    threads=1)
+colours = np.arange(6).reshape(2, 3)
+own.add_particles("hand", [[0.05, 0.3, 0.05], [0.06, 0.3, 0.05]], channels={"Cd": colours, "grain": [7, 8]})
+assert own.set_values("Cd", [3, 99999], [[1, 2, 3], [4, 5, 6]]) == 1
+for asked in (["Cd", "grain"], ["channels"]):
+    kept = own.points(attributes=asked)
+    assert np.array_equal(kept["Cd"][[3, 512, 513]], [[1, 2, 3], [0, 1, 2], [3, 4, 5]])
+    assert np.array_equal(kept["grain"][-2:], [7, 8])
+halves = own.points(attributes=["Cd", "pressure"], half=True)
+assert halves["v"].dtype == np.float16 and np.array_equal(halves["Cd"][513], [3, 4, 5]) and halves["P"].dtype == np.float64
+refused(lambda: own.add_particles("hand", [[0, 1, 0]], channels={"Cd": [1, 2]}), 101)
+refused(lambda: own.add_particles("hand", [[0, 1, 0]], channels={"Ce": [1]}), 64)
+fog, surface = own.fog(0.02), own.surface()
+assert fog["v"].shape == fog["density"].shape + (3,) and surface["surface"].min() < 0 < surface["surface"].max()
+mass = fog["density"].sum(dtype=np.float64) * np.prod(fog["voxel"])
+assert abs(mass - sum(s["particle_mass"] * s["count"] for s in own.sets())) < 1e-4 * mass
+heights = fog["lower"][1] + fog["voxel"][1] * np.arange(fog["density"].shape[1])
+middle = (fog["density"].sum(axis=(0, 2)) * heights).sum() / fog["density"].sum()
+assert abs(middle - own.points()["P"][:, 1].mean()) < 1e-3
+
+# A wall whose surface runs, and one that does so no more.
+one.drive_collider("wall", velocity=[0, 0.5, 0], spin=[0, 0, 0.25], center=[0, 0, 0])
+one.advance_step()
+one.drive_collider("wall")
+refused(lambda: one.drive_collider("floor", velocity=[1, 0, 0]), 64)
+
 # Errors, with key and place.
 error = refused(lambda: repose.Scene.from_text(SCENE).set("grid.spacing", -1).check(), 65)
 assert error.key == "grid.spacing" and "grid.spacing" in str(error)

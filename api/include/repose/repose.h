@@ -27,6 +27,7 @@
 #define REPOSE_REPOSE_H
 
 #include "repose_base.h"
+#include "repose_reading.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -37,11 +38,14 @@ extern "C" {
 
 enum { REPOSE_QUALITY_STANDARD = 0, REPOSE_QUALITY_DRAFT = 1, REPOSE_QUALITY_REFERENCE = 2 };
 
+/** How scenes are read. */
 typedef struct repose_scene_options {
-  uint32_t size, version;
+  uint32_t size;               /**< of the struct, bytes */
+  uint32_t version;            /**< REPOSE_STRUCT_VERSION */
   int32_t quality;             /**< as the command's --quality */
   int32_t allow_outside_paths; /**< not 0: meshes may lie outside the scene's folder */
 } repose_scene_options;
+REPOSE_DEFINE_INIT(repose_scene_options)
 
 /**
  * Reads a scene file. `options` may be null.
@@ -78,6 +82,7 @@ REPOSE_API repose_status repose_scene_check(repose_scene scene);
  * Such a collider has no "motion" and no "frames" of its own. Errors come with repose_engine_create.
  */
 REPOSE_API repose_status repose_scene_lead_pose(repose_scene scene, const char* collider);
+/** The same of one that deforms, with `rate` in 1/s. Error: ARGUMENT where it is not above 0. */
 REPOSE_API repose_status repose_scene_lead_mesh(repose_scene scene, const char* collider, double rate);
 
 /**
@@ -108,18 +113,29 @@ enum { REPOSE_LOG_WARNING = 1 };
 /** Told what a scene most likely does not mean, though it is no error. `message` is valid within the call. */
 typedef void (*repose_log_fn)(void* user, int32_t level, const char* message);
 
+/**
+ * For repose_engine_options::threads: the engine works in the arena of oneTBB that repose_engine_create is
+ * called in, within what its maker has set: concurrency, NUMA node, observers. Calls from elsewhere work there
+ * too.
+ */
+enum { REPOSE_THREADS_OF_CALLER = -1 };
+
 enum { REPOSE_TARGET_BEST = 0, REPOSE_TARGET_BASELINE = 1, REPOSE_TARGET_AVX2 = 2, REPOSE_TARGET_AVX512 = 3 };
 
+/** How an engine is made. */
 typedef struct repose_engine_options {
-  uint32_t size, version;
-  int32_t threads;     /**< of an arena of its own; 0: as many as the machine has. They change no bit */
+  uint32_t size;       /**< of the struct, bytes */
+  uint32_t version;    /**< REPOSE_STRUCT_VERSION */
+  int32_t threads;     /**< of an arena of its own; 0: as many as the machine has; or
+                            REPOSE_THREADS_OF_CALLER. They change no bit */
   int32_t target;      /**< instruction set; AVX2 and AVX-512 give the same bits */
   double memory_limit; /**< bytes that it may take; 0: 85 % of the machine's. What would need more is refused */
   int32_t log_contacts; /**< not 0: repose_contact can be asked; costs a little */
   int32_t reserved;     /**< 0 */
   repose_log_fn log;    /**< may be null; also told while the engine is made */
-  void* log_user;
+  void* log_user;       /**< what `log` is called with */
 } repose_engine_options;
+REPOSE_DEFINE_INIT(repose_engine_options)
 
 /**
  * Makes a simulation: builds solids, fills bodies with particles. `options` may be null. The scene may be
@@ -131,18 +147,22 @@ REPOSE_API repose_status repose_engine_create(repose_scene scene, const repose_e
 /** A call that is under way on another thread is interrupted and ends first. */
 REPOSE_API repose_status repose_engine_destroy(repose_engine engine);
 
+/** What a call that advances came to. */
 typedef struct repose_report {
-  uint32_t size, version;
-  int64_t frame;            /**< frames completed */
-  int64_t step;             /**< steps completed, since the scene began */
-  double time;              /**< s, of the scene */
-  int64_t steps;            /**< made by this call */
-  double least_dt, most_dt; /**< s, of those; 0 where there were none */
-  int64_t redone;           /**< steps that were tried again by half */
-  int32_t complete;         /**< 1: the call got as far as it was to; 0: interrupted, call again to go on */
-  int32_t reserved;
-  double seconds; /**< of wall time */
+  uint32_t size;    /**< of the struct, bytes */
+  uint32_t version; /**< REPOSE_STRUCT_VERSION */
+  int64_t frame;    /**< frames completed */
+  int64_t step;     /**< steps completed, since the scene began */
+  double time;      /**< s, of the scene */
+  int64_t steps;    /**< made by this call */
+  double least_dt;  /**< s, the shortest of those; 0 where there were none */
+  double most_dt;   /**< s, the longest */
+  int64_t redone;   /**< steps that were tried again by half */
+  int32_t complete; /**< 1: the call got as far as it was to; 0: interrupted, call again to go on */
+  int32_t reserved; /**< 0 */
+  double seconds;   /**< of wall time */
 } repose_report;
+REPOSE_DEFINE_INIT(repose_report)
 
 /**
  * @name Advancing
@@ -151,8 +171,11 @@ typedef struct repose_report {
  * and may be mixed. Errors: PHYSICS, MEMORY; the state is then that of the last step that was made.
  * @{
  */
+/** To the end of the frame at hand. */
 REPOSE_API repose_status repose_advance_frame(repose_engine engine, repose_report* report);
+/** `seconds` of the scene's time further. Error: also ARGUMENT where they are below 0. */
 REPOSE_API repose_status repose_advance_seconds(repose_engine engine, double seconds, repose_report* report);
+/** By one step. */
 REPOSE_API repose_status repose_advance_step(repose_engine engine, repose_report* report);
 /** @} */
 
@@ -162,12 +185,14 @@ REPOSE_API repose_status repose_advance_step(repose_engine engine, repose_report
  */
 REPOSE_API repose_status repose_interrupt(repose_engine engine);
 
+/** Where an engine is, for a callback. */
 typedef struct repose_progress {
-  uint32_t size, version;
-  int64_t frame; /**< frames completed */
-  int64_t step;  /**< steps completed */
-  double time;   /**< s, of the scene */
-  double dt;     /**< s, of the step that was made */
+  uint32_t size;    /**< of the struct, bytes */
+  uint32_t version; /**< REPOSE_STRUCT_VERSION */
+  int64_t frame;    /**< frames completed */
+  int64_t step;     /**< steps completed */
+  double time;      /**< s, of the scene */
+  double dt;        /**< s, of the step that was made */
 } repose_progress;
 /** Called after each step; what is not 0 ends the call that advances, with the state as it is. */
 typedef int (*repose_progress_fn)(void* user, const repose_progress* progress);
@@ -178,23 +203,30 @@ REPOSE_API repose_status repose_set_log(repose_engine engine, repose_log_fn log,
 
 /** All warnings so far: how many, and one of them; copies as repose_error_message does. */
 REPOSE_API repose_status repose_warning_count(repose_engine engine, size_t* count);
+/** A warning as text; `length` may be null. Error: ARGUMENT where there is none of the index. */
 REPOSE_API repose_status repose_warning(repose_engine engine, size_t index, char* buffer, size_t capacity,
                                         size_t* length);
 
+/** Figures of an engine. */
 typedef struct repose_info {
-  uint32_t size, version;
-  int64_t frame, step; /**< completed */
-  double time;         /**< s, of the scene */
-  uint64_t particles, particles_asleep;
-  uint64_t blocks;       /**< of nodes */
-  uint64_t generation;   /**< of views: see repose_channel */
-  double memory;         /**< bytes that it takes and has made room for */
-  double writing_memory; /**< bytes that a copy of the points takes for a while, about */
-  int32_t threads;
-  int32_t target;   /**< a REPOSE_TARGET, never BEST */
-  int32_t implicit; /**< 1: steps are implicit */
-  int32_t sound;    /**< 0: memory ran out in the midst of a change, and the state must not be saved */
+  uint32_t size;             /**< of the struct, bytes */
+  uint32_t version;          /**< REPOSE_STRUCT_VERSION */
+  int64_t frame;             /**< frames completed */
+  int64_t step;              /**< steps completed */
+  double time;               /**< s, of the scene */
+  uint64_t particles;        /**< that there are */
+  uint64_t particles_asleep; /**< of them, those in blocks that take no part */
+  uint64_t blocks;           /**< of nodes */
+  uint64_t generation;       /**< of views: see repose_channel */
+  double memory;             /**< bytes that it takes and has made room for */
+  double writing_memory;     /**< bytes that a copy of the points takes for a while, about */
+  int32_t threads;           /**< of its arena */
+  int32_t target;            /**< a REPOSE_TARGET, never BEST */
+  int32_t implicit;          /**< 1: steps are implicit */
+  int32_t sound;             /**< 0: memory ran out in the midst of a change, and the state must not be saved */
 } repose_info;
+REPOSE_DEFINE_INIT(repose_info)
+/** What it is at. */
 REPOSE_API repose_status repose_engine_info(repose_engine engine, repose_info* info);
 
 /** Of all numbers of all particles, and of the step: the one that `repose run` writes into run.json. */
@@ -221,114 +253,15 @@ typedef int (*repose_write_fn)(void* user, const void* data, size_t bytes);
  * Errors: CANNOT_WRITE, IO; NO_INPUT, SCENE (of another scene), IO, MEMORY.
  * @{
  */
+/** To a file. */
 REPOSE_API repose_status repose_state_save(repose_engine engine, const char* path);
+/** From a file. */
 REPOSE_API repose_status repose_state_load(repose_engine engine, const char* path);
+/** Through `write`, piece by piece. */
 REPOSE_API repose_status repose_state_write(repose_engine engine, repose_write_fn write, void* user);
+/** From memory. */
 REPOSE_API repose_status repose_state_read(repose_engine engine, const void* data, size_t bytes);
 /** @} */
-
-/* Reading particles -------------------------------------------------------------------------------------------
- */
-
-enum { REPOSE_UP_OF_SCENE = 0, REPOSE_UP_Y = 1, REPOSE_UP_Z = 2 };
-
-typedef struct repose_points_options {
-  uint32_t size, version;
-  const char*
-      attributes; /**< beside P, v, id, pscale, any of "stress,pressure,elastic_strain,density,speed,age,
-                   shear_rate,inertial_number,plastic_strain,velocity_gradient,channels"; or null */
-  int32_t mass;   /**< not 0: also "mass" */
-  int32_t up;     /**< in which frame P and v are; tensors are in the scene's alone */
-} repose_points_options;
-
-/**
- * A copy of all particles in the order of their ids, which lasts until it is destroyed, whatever the engine
- * does. `options` may be null. Errors: USAGE for an attribute that is unknown or lacks its key; MEMORY.
- */
-REPOSE_API repose_status repose_points_create(repose_engine engine, const repose_points_options* options,
-                                              repose_points* points);
-REPOSE_API repose_status repose_points_destroy(repose_points points);
-REPOSE_API repose_status repose_points_count(repose_points points, size_t* count);
-/**
- * Numbers per particle of an attribute: 3 of "P" (m) and "v" (m/s), 1 of "pscale" (m), 6 of tensors (xx yy zz
- * xy yz xz, Pa), 9 of "velocity_gradient" (by rows, 1/s), 1 of the others. Error: USAGE.
- */
-REPOSE_API repose_status repose_points_components(repose_points points, const char* attribute,
-                                                  int32_t* components);
-/**
- * Copies count x components floats, particle by particle, into memory of the host that has room for `capacity`.
- * Errors: USAGE; ARGUMENT where there is too little room.
- */
-REPOSE_API repose_status repose_points_read(repose_points points, const char* attribute, float* values,
-                                            size_t capacity);
-/** The same of positions in double precision, and of ids. */
-REPOSE_API repose_status repose_points_positions(repose_points points, double* values, size_t capacity);
-REPOSE_API repose_status repose_points_ids(repose_points points, uint32_t* ids, size_t capacity);
-
-typedef struct repose_set {
-  uint32_t size, version;
-  const char* name;       /**< of the body or emitter */
-  const char* material;   /**< its name in the scene */
-  double particle_mass;   /**< kg */
-  double particle_volume; /**< m^3, at rest */
-  uint64_t count;         /**< particles */
-  uint64_t channels;      /**< how many */
-  const uint32_t* begin;  /**< particles of block b are [begin[b], begin[b + 1]) */
-  uint64_t blocks;
-  uint64_t generation;
-} repose_set;
-
-enum { REPOSE_FLOAT = 1, REPOSE_DOUBLE = 2, REPOSE_UINT32 = 3 };
-typedef struct repose_view {
-  uint32_t size, version;
-  const char*
-      name; /**< "id", "position.x" (cells from the corner of the particle's block), "velocity.x" (m/s),
-                 "affine.xy" (1/s), "strain.xx" (elastic Hencky strain), and numbers that effects keep */
-  const void* data;
-  uint64_t count;      /**< numbers, contiguous */
-  uint64_t generation; /**< with which the view was made */
-  int32_t type;        /**< REPOSE_FLOAT, REPOSE_DOUBLE or REPOSE_UINT32 */
-  int32_t reserved;
-} repose_view;
-
-/**
- * @name Numbers where they lie
- * Particles come in sets, one for each body and emitter, and in a set block by block. Views copy nothing:
- * `data`, `begin` and the names are the engine's own memory, to be read alone, and valid until the next call
- * that advances, loads, changes, adds or removes. Each such call makes another generation; repose_view_check
- * says whether a view is still good. Errors: ARGUMENT for an index that is too large; USAGE for an unknown
- * name; STALE.
- * @{
- */
-REPOSE_API repose_status repose_set_count(repose_engine engine, size_t* count);
-REPOSE_API repose_status repose_set_info(repose_engine engine, size_t index, repose_set* set);
-REPOSE_API repose_status repose_channel(repose_engine engine, size_t set, size_t index, repose_view* view);
-REPOSE_API repose_status repose_channel_named(repose_engine engine, size_t set, const char* name,
-                                              repose_view* view);
-/** From any thread, at any time. */
-REPOSE_API repose_status repose_view_check(repose_engine engine, uint64_t generation);
-/**
- * Where the corners of the blocks lie, x y z of each, m: a particle is at corner + grid.spacing x position.
- * Copies 3 x `count` doubles into room for `capacity`; `corners` null asks for the count.
- */
-REPOSE_API repose_status repose_block_corners(repose_engine engine, double* corners, size_t capacity,
-                                              size_t* count);
-/** @} */
-
-typedef struct repose_measurement_info {
-  uint32_t size, version;
-  const char* probe;    /**< its name in the scene */
-  const char* quantity; /**< such as "force.x" */
-  const char* unit;     /**< empty for a number of things */
-  double value;         /**< not a number where there is none */
-} repose_measurement_info;
-/**
- * What the scene's probes have measured over the frame that was completed last. Texts are valid until the next
- * call on the engine that reads measurements or advances.
- */
-REPOSE_API repose_status repose_measurement_count(repose_engine engine, size_t* count);
-REPOSE_API repose_status repose_measurement(repose_engine engine, size_t index,
-                                            repose_measurement_info* measurement);
 
 /* What the host does between calls that advance ---------------------------------------------------------------
  */
@@ -344,6 +277,17 @@ REPOSE_API repose_status repose_move_collider(repose_engine engine, const char* 
                                               const double matrix[16], double seconds);
 
 /**
+ * Says how the surface of a collider that the host leads (repose_scene_lead_pose) moves, in place of what its
+ * poses come to: a belt that runs, a drum that turns in its place. A point x of it has velocity + spin x (x -
+ * center), in the scene's frame: velocity[3] in m/s, spin[3] in rad/s, center[3] in m; spin and center may be
+ * null, for zeros. It holds until it is said anew; `velocity` null: by its poses again. It bounds steps as any
+ * speed of a collider. Error: USAGE.
+ */
+REPOSE_API repose_status repose_drive_collider(repose_engine engine, const char* collider,
+                                               const double* velocity, const double* spin,
+                                               const double* center);
+
+/**
  * A mesh that the host leads (repose_scene_lead_mesh) goes to new places of its vertices by the end of the
  * stretch of 1/rate s that begins now; between stretches it cannot be said. `vertices`: x y z of each, m, in
  * coordinates as of the scene's mesh file. `triangles`: three corners of each, from 0, counter-clockwise from
@@ -356,13 +300,16 @@ REPOSE_API repose_status repose_deform_collider(repose_engine engine, const char
                                                 const int32_t* triangles, size_t triangle_count,
                                                 int32_t at_once);
 
+/** What the material did to a collider. */
 typedef struct repose_contact_info {
-  uint32_t size, version;
+  uint32_t size;    /**< of the struct, bytes */
+  uint32_t version; /**< REPOSE_STRUCT_VERSION */
   double seconds;   /**< of the scene, that it is the mean over: of the last call that advanced */
   double force[3];  /**< of the material on the collider, N */
   double moment[3]; /**< about the scene's origin, N m */
   double power;     /**< that the collider gives to the material, W */
 } repose_contact_info;
+REPOSE_DEFINE_INIT(repose_contact_info)
 /** Error: USAGE where log_contacts was not asked for. */
 REPOSE_API repose_status repose_contact(repose_engine engine, const char* collider,
                                         repose_contact_info* contact);
@@ -376,33 +323,35 @@ REPOSE_API repose_status repose_add_particles(repose_engine engine, const char* 
                                               const double* positions, const float* velocities, size_t count,
                                               uint32_t* first_id);
 /**
+ * The same with numbers of the host's own, which follow the particles from then on: `channels` are names of the
+ * scene's "channels", `values` for each of them `count` times as many numbers as it has components, particle by
+ * particle. Particles have the scene's "initial" of channels that are not named, and all those that do not
+ * begin here of all. Errors: USAGE also for a channel that the scene has not; MEMORY.
+ */
+REPOSE_API repose_status repose_add_particles_with(repose_engine engine, const char* emitter,
+                                                   const double* positions, const float* velocities,
+                                                   size_t count, const char* const* channels,
+                                                   const float* const* values, size_t channel_count,
+                                                   uint32_t* first_id);
+/** Numbers per particle of one of the scene's "channels". Error: USAGE where there is none of the name. */
+REPOSE_API repose_status repose_channel_components(repose_engine engine, const char* channel,
+                                                   int32_t* components);
+/**
+ * Other numbers of a channel of the scene, for `count` particles of ids, of any body or emitter. Ids that are
+ * not there are passed over; `found` (may be null) says how many there were. Error: USAGE, also for an id that
+ * comes twice; nothing has then changed. Views stay good, and show the new numbers.
+ */
+REPOSE_API repose_status repose_set_values(repose_engine engine, const char* channel, const uint32_t* ids,
+                                           const float* values, size_t count, size_t* found);
+/**
  * Particles end. Ids that are not there are passed over; `removed` (may be null) says how many there were.
  * Error: USAGE where the scene has no emitter of type "host".
  */
 REPOSE_API repose_status repose_remove_particles(repose_engine engine, const uint32_t* ids, size_t count,
                                                  size_t* removed);
 
-/* Structs as they begin ---------------------------------------------------------------------------------------
- */
-
-#define REPOSE_DEFINE_INIT(type)          \
-  static inline type type##_init(void) {  \
-    type made;                            \
-    memset(&made, 0, sizeof made);        \
-    made.size = (uint32_t)sizeof made;    \
-    made.version = REPOSE_STRUCT_VERSION; \
-    return made;                          \
-  }
-REPOSE_DEFINE_INIT(repose_scene_options)
-REPOSE_DEFINE_INIT(repose_engine_options)
-REPOSE_DEFINE_INIT(repose_report)
-REPOSE_DEFINE_INIT(repose_info)
-REPOSE_DEFINE_INIT(repose_points_options)
-REPOSE_DEFINE_INIT(repose_set)
-REPOSE_DEFINE_INIT(repose_view)
-REPOSE_DEFINE_INIT(repose_measurement_info)
-REPOSE_DEFINE_INIT(repose_contact_info)
 #undef REPOSE_DEFINE_INIT
+#undef REPOSE_DEFINE_INIT_WITH
 
 #ifdef __cplusplus
 }

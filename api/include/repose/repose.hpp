@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "repose_base.hpp"
+#include "repose_reading.hpp"
 
 namespace repose {
 // Names apart from those of the engine, which the static library holds.
@@ -81,46 +82,6 @@ class Scene {
  private:
   explicit Scene(repose_scene handle) : handle_(handle) {}
   detail::Owned<repose_scene, repose_scene_destroy> handle_;
-};
-
-/** A copy of all particles in the order of their ids. */
-class Points {
- public:
-  explicit Points(repose_points handle) : handle_(handle) {
-    detail::check(repose_points_count(get(), &count_));
-  }
-  std::size_t size() const { return count_; }
-  int components(const std::string& attribute) const {
-    std::int32_t components = 0;
-    detail::check(repose_points_components(get(), attribute.c_str(), &components));
-    return components;
-  }
-  void read(const std::string& attribute, Span<float> into) const {
-    detail::check(repose_points_read(get(), attribute.c_str(), into.data(), into.size()));
-  }
-  std::vector<float> read(const std::string& attribute) const {
-    std::vector<float> values(count_ * static_cast<std::size_t>(components(attribute)) + 1);
-    read(attribute, values);
-    values.pop_back();  // so that there was an address also for no particle
-    return values;
-  }
-  std::vector<std::array<double, 3>> positions() const {
-    std::vector<std::array<double, 3>> positions(count_ + 1);
-    detail::check(repose_points_positions(get(), positions[0].data(), 3 * count_));
-    positions.pop_back();
-    return positions;
-  }
-  std::vector<std::uint32_t> ids() const {
-    std::vector<std::uint32_t> ids(count_ + 1);
-    detail::check(repose_points_ids(get(), ids.data(), count_));
-    ids.pop_back();
-    return ids;
-  }
-  repose_points get() const { return handle_.get(); }
-
- private:
-  detail::Owned<repose_points, repose_points_destroy> handle_;
-  std::size_t count_ = 0;
 };
 
 /** A probe's figure. */
@@ -207,6 +168,16 @@ class Engine {
     detail::check(repose_points_create(get(), &options, &handle));
     return Points(handle);
   }
+  Volume surface(const repose_surface_options& options = repose_surface_options_init()) const {
+    repose_volume handle{0};
+    detail::check(repose_surface_create(get(), &options, &handle));
+    return Volume(handle);
+  }
+  Volume fog(double voxel = 0.0) const {
+    repose_volume handle{0};
+    detail::check(repose_fog_create(get(), voxel, &handle));
+    return Volume(handle);
+  }
   std::size_t set_count() const {
     std::size_t count = 0;
     detail::check(repose_set_count(get(), &count));
@@ -250,6 +221,15 @@ class Engine {
   void move_collider(const std::string& collider, const std::array<double, 16>& matrix, double seconds) {
     detail::check(repose_move_collider(get(), collider.c_str(), matrix.data(), seconds));
   }
+  /** How its surface moves; about an axis through `center`. */
+  void drive_collider(const std::string& collider, const std::array<double, 3>& velocity,
+                      const std::array<double, 3>& spin = {}, const std::array<double, 3>& center = {}) {
+    detail::check(repose_drive_collider(get(), collider.c_str(), velocity.data(), spin.data(), center.data()));
+  }
+  /** By its poses again. */
+  void release_collider(const std::string& collider) {
+    detail::check(repose_drive_collider(get(), collider.c_str(), nullptr, nullptr, nullptr));
+  }
   void deform_collider(const std::string& collider, Span<const double> vertices,
                        Span<const std::int32_t> triangles = {}, bool at_once = false) {
     detail::check(repose_deform_collider(get(), collider.c_str(), vertices.data(), vertices.size() / 3,
@@ -260,16 +240,33 @@ class Engine {
     detail::check(repose_contact(get(), collider.c_str(), &contact));
     return contact;
   }
+  /** Numbers of the scene's "channels", by name, particle by particle. */
+  using Values = std::vector<std::pair<std::string, Span<const float>>>;
   /** Returns the id of the first; `velocities` may be empty. */
   std::uint32_t add_particles(const std::string& emitter, Span<const double> positions,
-                              Span<const float> velocities = {}) {
+                              Span<const float> velocities = {}, const Values& values = {}) {
+    const std::size_t count = positions.size() / 3;
     if (!velocities.empty() && velocities.size() != positions.size())
       throw Error(REPOSE_ERROR_ARGUMENT, "velocities: as many numbers as positions are needed", "velocities",
                   "");
+    std::vector<const char*> channels;
+    std::vector<const float*> numbers;
+    for (const auto& [channel, of] : values) {
+      check_size(channel, of, count);
+      channels.push_back(channel.c_str());
+      numbers.push_back(of.data());
+    }
     std::uint32_t first = 0;
-    detail::check(repose_add_particles(get(), emitter.c_str(), positions.data(), velocities.data(),
-                                       positions.size() / 3, &first));
+    detail::check(repose_add_particles_with(get(), emitter.c_str(), positions.data(), velocities.data(), count,
+                                            channels.data(), numbers.data(), channels.size(), &first));
     return first;
+  }
+  /** Returns how many of the ids there were. */
+  std::size_t set_values(const std::string& channel, Span<const std::uint32_t> ids, Span<const float> values) {
+    std::size_t found = 0;
+    check_size(channel, values, ids.size());
+    detail::check(repose_set_values(get(), channel.c_str(), ids.data(), values.data(), ids.size(), &found));
+    return found;
   }
   std::size_t remove_particles(Span<const std::uint32_t> ids) {
     std::size_t removed = 0;
@@ -314,6 +311,14 @@ class Engine {
     }
   }
 
+  /** As the library cannot see how many numbers there are. */
+  void check_size(const std::string& channel, Span<const float> values, std::size_t particles) const {
+    std::int32_t components = 0;
+    detail::check(repose_channel_components(get(), channel.c_str(), &components));
+    if (values.size() == particles * static_cast<std::size_t>(components)) return;
+    throw Error(REPOSE_ERROR_ARGUMENT,
+                channel + ": has " + std::to_string(components) + " numbers per particle", channel, "");
+  }
   void finish(repose_status status) {
     if (callbacks_->thrown) std::rethrow_exception(std::exchange(callbacks_->thrown, nullptr));
     detail::check(status);

@@ -46,16 +46,21 @@ enum {
 
 /** A scene being put together. Handles are numbers, no addresses; value 0 is none. */
 typedef struct repose_scene {
-  uint64_t value;
+  uint64_t value; /**< 0: none */
 } repose_scene;
 /** A simulation. */
 typedef struct repose_engine {
-  uint64_t value;
+  uint64_t value; /**< 0: none */
 } repose_engine;
 /** A copy of the particles at one moment. */
 typedef struct repose_points {
-  uint64_t value;
+  uint64_t value; /**< 0: none */
 } repose_points;
+
+/** The material at one moment, as a box of voxels. */
+typedef struct repose_volume {
+  uint64_t value; /**< 0: none */
+} repose_volume;
 
 /** The version of the library, as REPOSE_VERSION. */
 REPOSE_API uint32_t repose_version(void);
@@ -72,11 +77,27 @@ REPOSE_API const char* repose_status_text(repose_status status);
  * it.
  * @{
  */
+/** What it returned. */
 REPOSE_API repose_status repose_error_status(void);
+/** What it says. */
 REPOSE_API size_t repose_error_message(char* buffer, size_t capacity);
+/** What it is about. */
 REPOSE_API size_t repose_error_key(char* buffer, size_t capacity);
+/** Where in a text that is. */
 REPOSE_API size_t repose_error_place(char* buffer, size_t capacity);
 /** @} */
+
+/** Defines repose_NAME_init(), a struct that knows its size and version and is otherwise 0; then `more`. */
+#define REPOSE_DEFINE_INIT_WITH(type, more) \
+  static inline type type##_init(void) {    \
+    type made;                              \
+    memset(&made, 0, sizeof made);          \
+    made.size = (uint32_t)sizeof made;      \
+    made.version = REPOSE_STRUCT_VERSION;   \
+    more return made;                       \
+  }
+/** The same without more. */
+#define REPOSE_DEFINE_INIT(type) REPOSE_DEFINE_INIT_WITH(type, )
 
 #ifdef __cplusplus
 }
