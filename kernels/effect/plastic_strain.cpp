@@ -1,9 +1,10 @@
 // Repose: the equivalent plastic strain of a step, added to that of all before it.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/effect/plastic_strain.cpp"
+#include "kernels/base/targets.h"
+
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/base/targets.h"
 
 #include "kernels/base/matrix_arrays-inl.h"
 #include "kernels/effect/plastic_strain.h"
