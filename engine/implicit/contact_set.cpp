@@ -40,12 +40,19 @@ void ContactSet<Real>::set_block(std::size_t block, const std::vector<Constraint
       node = nodes.end() - 1;
       node->index = law.node;
     }
-    Constraint<Real> hold = law.relative_to(begin + law.node * kNodeValues + 1);
-    if (!rubs_) hold.friction = Real(0);
     node->laws.push_back(law);
-    node->holds.push_back({hold, law.contact != Contact::kSeparating});
   }
-  for (Node& node : nodes) node.held.span(node.holds);
+  // What sticks counts first, as in explicit steps (Corner::sort).
+  const auto sticks = [](const Constraint<Real>& law) { return law.contact == Contact::kSticky; };
+  for (Node& node : nodes) {
+    std::stable_partition(node.laws.begin(), node.laws.end(), sticks);
+    for (const Constraint<Real>& law : node.laws) {
+      Constraint<Real> hold = law.relative_to(begin + law.node * kNodeValues + 1);
+      if (!rubs_) hold.friction = Real(0);
+      node.holds.push_back({hold, law.contact != Contact::kSeparating});
+    }
+    node.held.span(node.holds);
+  }
 }
 
 template <class Real>

@@ -5,6 +5,7 @@
 // held may rub (engine/implicit/friction.h).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "engine/implicit/friction.h"
@@ -77,8 +78,9 @@ class ContactSet {
 
   /// Of the velocities `v` that were found, `nodes` with their masses: takes the impulses that the solve has
   /// given to contacts, and lets contacts act as in an explicit step (engine/plan/contact_law.h), which stops
-  /// what sticks to the last bit. Calls record(node, mass), a recorder, for each. `rubbed`: the same after
-  /// friction, where that follows the solve; may be `v`.
+  /// what sticks to the last bit; several at a node in the order, and beginning with those, that were solved
+  /// with, or they would come to another velocity. Calls record(node, mass), a recorder, for each. `rubbed`:
+  /// the same after friction, where that follows the solve; may be `v`.
   template <class Record>
   void act(std::size_t block, Real dt, const Real* nodes, Real* v, Real* rubbed, Record record) const;
 
@@ -92,8 +94,8 @@ class ContactSet {
     int index = 0;
     HeldDirections<Real> held;
     Vector3 reaction;                    // J
-    std::vector<Constraint<Real>> laws;  // as they were listed
-    std::vector<Hold<Real>> holds;       // of changes of velocity; pushes in N s
+    std::vector<Constraint<Real>> laws;  // what sticks first, else as they were listed
+    std::vector<Hold<Real>> holds;       // of changes of velocity, in that order; pushes in N s
     Friction<Real> evaluated, tangent;
   };
   /// What linear solves ask for in every iteration, without the rest of a node.
@@ -109,6 +111,10 @@ class ContactSet {
   /// How much v, that of the node, passes a wall; nothing where that is rounding.
   static Real passed(const Constraint<Real>& hold, const Vector3& v);
   static bool lets_go(const Node& node, const Hold<Real>& hold);
+  static std::ptrdiff_t active(const Node& node) {
+    return std::count_if(node.holds.begin(), node.holds.end(),
+                         [](const Hold<Real>& hold) { return hold.active; });
+  }
 
   /// The solids at a node, as collide() asks for them.
   struct AroundNode {
@@ -139,7 +145,15 @@ void ContactSet<Real>::act(std::size_t block, Real dt, const Real* nodes, Real* 
     if (!(mass > Real(0))) continue;
     Real *const bar = v + at + 1, *const tilde = rubbed + at + 1;
     for (int axis = 0; axis < 3; ++axis) bar[axis] -= node.reaction[axis] / mass;
-    collide(AroundNode{node.laws}, corner, dt, bar, tilde, record(static_cast<std::size_t>(node.index), mass));
+    const auto recorder = record(static_cast<std::size_t>(node.index), mass);
+    if (active(node) < 2) {
+      collide(AroundNode{node.laws}, corner, dt, bar, tilde, recorder);
+      continue;
+    }
+    corner.clear();
+    for (std::size_t k = 0; k < node.laws.size(); ++k) corner.add(node.laws[k], node.holds[k].active);
+    corner.settle_as_listed(bar);
+    rub_in_corner(corner, bar, tilde, recorder);
   }
 }
 

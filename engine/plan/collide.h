@@ -21,11 +21,14 @@ class Corner {
   using Vector3 = typename HeldDirections<Real>::Vector3;
 
   void clear() { holds_.clear(); }
-  void add(const Constraint<Real>& hold) { holds_.push_back({hold, hold.contact != Contact::kSeparating}); }
+  void add(const Constraint<Real>& hold) { add(hold, hold.contact != Contact::kSeparating); }
+  /// `acts`: as somebody has found it, who will have it settled as listed.
+  void add(const Constraint<Real>& hold, bool acts) { holds_.push_back({hold, acts}); }
 
   /// v* -> v-bar, by an active set: of contacts that only push the one that would pull most is let go, else the
-  /// one that is passed most is taken up.
+  /// one that is passed most is taken up. Those that ask for most count first; as listed, the first do.
   void settle(Real* v);
+  void settle_as_listed(Real* v);
   /// v-bar -> v-tilde: takes at most the sum of all mu J from the motion against the roughest.
   void rub(Real* v);
   /// Calls give(solid, velocity, change of velocity) for what each has done.
@@ -67,9 +70,14 @@ void Corner<Real>::sort(const Vector3& v) {
 
 template <class Real>
 void Corner<Real>::settle(Real* v) {
+  sort(Eigen::Map<const Vector3>(v));
+  settle_as_listed(v);
+}
+
+template <class Real>
+void Corner<Real>::settle_as_listed(Real* v) {
   Eigen::Map<Vector3> at(v);
   const Vector3 free = at;
-  sort(free);
   // Each contact comes and goes once or twice; beyond that they only take turns.
   for (std::size_t turn = 0; turn <= 4 * holds_.size(); ++turn) {
     directions_.span(holds());
@@ -133,6 +141,15 @@ void Corner<Real>::for_each_given(Give give) const {
   }
 }
 
+/// v-bar -> v-tilde, and the record.
+template <class Real, class Record>
+void rub_in_corner(Corner<Real>& corner, const Real* bar, Real* tilde, Record record) {
+  if (tilde != bar) std::copy_n(bar, 3, tilde);
+  corner.rub(tilde);
+  corner.for_each_given(
+      [&](std::size_t solid, const Real* wall, const Real* change) { record.give(solid, wall, change); });
+}
+
 /// Of v* in `bar`, where more than one of the solids acts.
 template <class Real, class Solids, class Record>
 void collide_in_corner(const Solids& solids, Corner<Real>& corner, Real dt, Real* bar, Real* tilde,
@@ -148,10 +165,7 @@ void collide_in_corner(const Solids& solids, Corner<Real>& corner, Real dt, Real
     corner.add(hold);
   }
   corner.settle(bar);
-  std::copy_n(bar, 3, tilde);
-  corner.rub(tilde);
-  corner.for_each_given(
-      [&](std::size_t solid, const Real* wall, const Real* change) { record.give(solid, wall, change); });
+  rub_in_corner(corner, bar, tilde, record);
 }
 
 /// `solids` knows those near the node, in the order of the scene: size(), contact(k), friction(k), solid(k);

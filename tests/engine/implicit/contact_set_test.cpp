@@ -216,6 +216,31 @@ TEST(ContactSet, WhatTheSolveFound_ActsAsInAnExplicitStep) {
   EXPECT_NEAR((after - node.wall).norm(), std::max(0.0, slip.norm() - bound), 1e-12);
 }
 
+// Else the end of the step would give the node another velocity than was solved for.
+TEST(ContactSet, OfWhatSlipsAndWhatSticks_TheLatterIsObeyed) {
+  Constraint<double> slips, sticks;
+  slips.node = sticks.node = kNode;
+  slips.contact = Contact::kSlip;
+  sticks.contact = Contact::kSticky;
+  slips.solid = 0;
+  sticks.solid = 1;
+  slips.normal[1] = sticks.normal[1] = slips.velocity[1] = slips.bound = 1.0;
+  sticks.velocity[1] = sticks.bound = 0.25;
+  slips.distance = sticks.distance = -1.0;
+  for (const auto& list : {std::vector{slips, sticks}, std::vector{sticks, slips}}) {
+    ContactSet<double> contacts;
+    contacts.clear(1);
+    double velocities[kBlockValues] = {}, nodes[kBlockValues] = {};
+    contacts.set_block(0, list, velocities);
+    contacts.apply(0, velocities);
+    EXPECT_EQ(velocities[kAt + 1], 0.25);
+    nodes[kNode * kNodeValues] = kMass;
+    std::copy_n(velocities + kAt, 3, nodes + kAt);
+    contacts.act(0, 1e-2, nodes, nodes, nodes, [](std::size_t, double) { return NoContactRecorder{}; });
+    EXPECT_EQ(nodes[kAt + 1], 0.25);
+  }
+}
+
 // A node at rest bears what it is asked to, and counts for what is beyond.
 TEST(ContactSet, FrictionAtRest_BearsWhatItCan) {
   OneNode node;
