@@ -158,7 +158,7 @@ TEST(ApiChannels, NamesThatAreTakenOrNone_AreRefusedWithTheirKey) {
 }
 
 TEST(ApiChannels, Files_HaveThemAsAttributes) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   Engine engine = kept_engine();
   pour(engine);
   engine.advance_frame();

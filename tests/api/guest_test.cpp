@@ -111,13 +111,13 @@ class OddProcess {
   }
 
  private:
-  TestFolder folder_;
+  TemporaryFolder folder_;
   std::filesystem::path was_in_ = std::filesystem::current_path();
   std::map<int, void (*)(int)> before_;
 };
 
 TEST(ApiGuest, ProcessOfTheHost_IsFoundAsItWasAndChangesNoBit) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   const Work plain = work_of_a_host(folder.path(), 2);
   const OddProcess odd;
   const Process before;
@@ -131,7 +131,7 @@ TEST(ApiGuest, ProcessOfTheHost_IsFoundAsItWasAndChangesNoBit) {
 }
 
 TEST(ApiGuest, FlushedDenormalsAndAnotherRounding_AreFoundAsTheyWereAndChangeNoBit) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   const Work plain = work_of_a_host(folder.path(), 1);
   const unsigned usual = _mm_getcsr();
   constexpr unsigned kFlush = 0x8040, kUpwards = 0x4000, kFlags = 0x3f;  // FTZ and DAZ; rounding; what was met
@@ -147,7 +147,7 @@ TEST(ApiGuest, FlushedDenormalsAndAnotherRounding_AreFoundAsTheyWereAndChangeNoB
 }
 
 TEST(ApiGuest, EnginesOfOtherScenesComingAndGoingAside_ChangeNoBit) {
-  const TestFolder folder;
+  const TemporaryFolder folder;
   const Work alone = work_of_a_host(folder.path(), 1);
   std::array<Work, 8> works;
   std::vector<std::thread> hosts;

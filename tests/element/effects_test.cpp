@@ -81,7 +81,9 @@ TEST(ElementRateFriction, SimpleShear_FollowsMuOfI) {
     const double still = 3.0 / std::sqrt(2.0) * slope_of("triaxial_compression", 30.0);
     const double expected = still + rise / (1.0 + threshold / inertial);
     EXPECT_NEAR(end.stress[2] / end.p(), expected, 2e-3 * expected) << rate;
-    if (rate > 10.0) EXPECT_GT(expected, 1.05 * still) << "the control";
+    if (rate > 10.0) {
+      EXPECT_GT(expected, 1.05 * still) << "the control";
+    }
   }
 }
 

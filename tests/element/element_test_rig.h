@@ -16,13 +16,13 @@ namespace repose {
 
 inline constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// A scene with a material "sand", of Young's modulus 1e7 Pa, nu = 0.3 and phi = 30 degrees. `material`:
+/// A scene with a material "sand", of Young's modulus 1e7 Pa, nu = 0.3 and phi (degrees). `material`:
 /// further keys of it; `more`: of the scene.
-inline Scene sand_scene(const std::string& material = "", const std::string& more = "") {
+inline Scene sand_scene(const std::string& material = "", const std::string& more = "", double phi = 30.0) {
   auto scene = read_scene_text(R"json({"repose": 1, "name": "element", "grid": {"spacing": 0.1},
     "bodies": [{"name": "box", "material": "sand", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 1, 1]}}],
-    "materials": {"sand": {"type": "drucker_prager", "youngs_modulus": 1e7, "poisson_ratio": 0.3, "friction_angle": 30)json" +
-                                   material + "}}" + more + "}",
+    "materials": {"sand": {"type": "drucker_prager", "youngs_modulus": 1e7, "poisson_ratio": 0.3, "friction_angle": )json" +
+                                   std::to_string(phi) + material + "}}" + more + "}",
                                "element.json", ".");
   if (!scene) throw std::runtime_error(scene.error().text());
   return *scene;

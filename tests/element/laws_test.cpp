@@ -32,7 +32,7 @@ TEST(Oedometric, StrongSand_IsElasticByTheOedometricModulus) {
 TEST(Oedometric, WeakSand_LocksAtTheRatioOfItsCone) {
   // Elastic as long as sin(phi) >= 1 - 2 nu, 23.6 degrees; on the cone the ratio is 1/Kp.
   const double phi = 20.0, sine = std::sin(phi / kDegrees), locked = (1.0 - sine) / (1.0 + sine);
-  const auto states = driven(sand_scene(", \"friction_angle\": 20"), oedometric_path(0.0, {0.05, 100, 1.0}));
+  const auto states = driven(sand_scene("", "", phi), oedometric_path(0.0, {0.05, 100, 1.0}));
   for (std::size_t k = 1; k < states.size(); ++k) {
     EXPECT_NEAR(lateral(states[k]) / axial(states[k]), locked, 1e-10);
     EXPECT_GT(std::abs(kNu / (1.0 - kNu) - locked), 0.05) << "the control: not that of elasticity";
@@ -57,9 +57,8 @@ TEST(TriaxialCompression, EachMatching_YieldsAtItsRatio) {
 
 TEST(TriaxialCompression, OfTheAngle_HasItsKp) {
   for (const double phi : {20.0, 30.0, 35.0, 40.0}) {
-    const std::string angle = ", \"friction_angle\": " + std::to_string(phi);
     const ElementState end =
-        driven(sand_scene(angle), triaxial_path(kPressure, {0.01, 200, 1.0}, false)).back();
+        driven(sand_scene("", "", phi), triaxial_path(kPressure, {0.01, 200, 1.0}, false)).back();
     const double sine = std::sin(phi / kDegrees), kp = (1.0 + sine) / (1.0 - sine);
     EXPECT_NEAR(axial(end) / lateral(end), kp, 1e-7 * kp) << phi;
   }

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "engine/plan/contact_log.h"
+
 namespace repose {
 namespace {
 
