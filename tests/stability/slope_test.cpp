@@ -56,6 +56,11 @@ TEST(Battery, Case30_TwoDegreesBelowTheFlowAngle_Rests) {
       last = std::move(now);
     }
     result.at_most(std::to_string(cells) + " cells high: moved in 10 s", moved / 0.05, 1.0, "cells");
+    // What slides goes round many times between two looks, which sees little of it.
+    const Diagnostics end = simulation->diagnose();
+    const double free = kGravity * std::sin((flow_angle() - 2.0) * kDegree) * 10.0;
+    result.at_most(std::to_string(cells) + " cells high: speed after 10 s, of what slides freely",
+                   std::abs(end.momentum[0] / end.mass) / free, 1e-3);
   }
 }
 
