@@ -145,7 +145,10 @@ TEST(Battery, Case38_DegenerateSolidsAreRefusedOrTold) {
       EXPECT_EQ(simulation.error().kind, ErrorKind::kBadScene) << text;
       continue;
     }
-    const bool told = !(*simulation)->warnings().empty();
+    const auto& warnings = (*simulation)->warnings();
+    const bool told = std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.find("colliders.it: is thinner than two cells") != std::string::npos;
+    });
     EXPECT_EQ(told, degenerate.told) << degenerate.what;
     untold += told == degenerate.told ? 0.0 : 1.0;
     EXPECT_TRUE((*simulation)->advance_frame());
