@@ -2,7 +2,9 @@
 # Installs what is missing, builds, and runs the tests.
 #   bash tests/run.sh                      every test but the long ones
 #   bash tests/run.sh --all [PART]         the long ones too: all of them, or one part of them alone:
-#                                          stability, sanitizers, consumers, fuzz, rest
+#                                          stability, sanitizers, consumers, fuzz, rest; or, which is no part of
+#                                          all since it builds the engine over and over, breaks: whether each hard
+#                                          case notices a broken engine (tests/stability/breaks.py)
 #   bash tests/run.sh --stability [--page FILE]
 #                                          the battery of hard cases as a table, and as a page of Markdown
 #   bash tests/run.sh --build-only         stops after the build
@@ -10,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-usage() { sed -n '2,9s/^# *//p' "$0" >&2; exit 64; }
+usage() { sed -n '2,11s/^# *//p' "$0" >&2; exit 64; }
 
 build_only=false all=false stability=false part= page=
 while [ $# -gt 0 ]; do
@@ -19,7 +21,7 @@ while [ $# -gt 0 ]; do
     --all)
       all=true
       case "${2:-}" in
-        stability | sanitizers | consumers | fuzz | rest) part=$2; shift ;;
+        stability | sanitizers | consumers | fuzz | rest | breaks) part=$2; shift ;;
         "" | --*) ;;
         *) usage ;;
       esac ;;
@@ -59,10 +61,10 @@ sanitizers() {
   run tsan -L unit -R 'Kernel|Scatter|Gather|BlockSort|State|ParticleEdit|Stepper|StepPlan|Determinism'
 }
 
-if [ "$part" = sanitizers ]; then
-  sanitizers
-  exit
-fi
+case "$part" in
+  sanitizers) sanitizers; exit ;;
+  breaks) exec python3 tests/stability/breaks.py --jobs "$jobs" ;;
+esac
 
 build "$preset"
 $build_only && exit 0
