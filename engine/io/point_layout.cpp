@@ -54,7 +54,7 @@ Result<void> check_attributes(const PointCloud& points, const std::string& path)
     const int n = attribute.components;
     const std::string label = "attribute '" + attribute.name + "' ";
     const auto refuse = [&](const std::string& why) { return Error{ErrorKind::kUsage, label + why, path}; };
-    if (n != 1 && suffixes(n).empty()) {
+    if (!has_layout(n)) {
       return refuse("has " + std::to_string(n) + " components; 1, 2, 3, 4, 6 and 9 can be written");
     }
     if (!is_plain_name(attribute.name)) {
@@ -119,6 +119,10 @@ Result<void> check_cloud(const PointCloud& points, const std::string& path) {
     }
   }
   return check_attributes(points, path);
+}
+
+bool has_layout(int components) {
+  return components == 1 || !suffixes(components).empty();
 }
 
 std::string component_name(const PointAttribute& attribute, int k) {

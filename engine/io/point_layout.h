@@ -15,6 +15,9 @@ namespace repose {
 /// (74). `path` names the file in the error.
 Result<void> check_cloud(const PointCloud& points, const std::string& path);
 
+/// Whether files have a form for that many components.
+bool has_layout(int components);
+
 /// Name of component `k`: "stress_xx". Up to four are x y z w; six are xx yy zz xy yz xz, a symmetric tensor in
 /// the order of VTK; nine are xx xy xz yx ... row by row. A single component keeps the plain name.
 std::string component_name(const PointAttribute& attribute, int k);

@@ -1,5 +1,6 @@
 // Repose: VDB files of ours, read back: none is parsed that does not carry the checksum of its bytes, and none
 // within this process.
+#include "engine/io/point_layout.h"
 #include "engine/io/vdb_record.h"
 #include "engine/vdb/checksum.h"
 #include "engine/vdb/question.h"
@@ -56,7 +57,7 @@ PointCloud take_points(RecordReader& record) {
     PointAttribute& attribute = points.attributes.emplace_back();
     attribute.name = record.text();
     const auto components = record.value<std::uint64_t>();
-    if (components != 1 && components != 3 && components != 6 && components != 9)
+    if (components == 0 || components > 9 || !has_layout(static_cast<int>(components)))
       wrong("an attribute of another size");
     attribute.components = static_cast<int>(components);
     attribute.values = record.array<float>(components * count);

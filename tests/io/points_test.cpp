@@ -323,7 +323,7 @@ TEST_F(PointFiles, AllWriters_CloudThatNoFileCouldHold_Refused) {
     expect_refused(points, ErrorKind::kUsage);
   }
   points = make_cloud(10);
-  points.attributes.push_back({"odd", 2, std::vector<float>(20)});
+  points.attributes.push_back({"odd", 5, std::vector<float>(50)});
   expect_refused(points, ErrorKind::kUsage);
   EXPECT_EQ(files(), 0u);
 }

@@ -81,8 +81,8 @@ TEST(PlasticStrain, ImplicitSteps_ComeToWhatExplicitOnesComeTo) {
                 implicit ? "time.integrator=implicit" : "time.integrator=explicit", "time.max_step=5e-4"}));
     ASSERT_TRUE(run_until(*simulation, 0.1));
     double sum = 0.0;
-    for (const float value : simulation->points({{OutputAttribute::kPlasticStrain}}).attributes.back().values)
-      sum += value;
+    const PointCloud points = simulation->points({{OutputAttribute::kPlasticStrain}});
+    for (const float value : points.attributes.back().values) sum += value;
     most[implicit] = sum / static_cast<double>(simulation->particles());
   }
   report("mean, explicit", most[0]);

@@ -9,7 +9,7 @@ namespace repose {
 namespace {
 
 constexpr double kWidth = 640.0, kHeight = 420.0;
-constexpr double kLeft = 74.0, kRight = 18.0, kBottom = 56.0, kTitle = 34.0, kLegendRow = 20.0, kStrip = 26.0;
+constexpr double kLeft = 90.0, kRight = 18.0, kBottom = 56.0, kTitle = 34.0, kLegendRow = 20.0, kStrip = 26.0;
 constexpr const char* kInk = "#1d2430";
 constexpr const char* kFaint = "#6b7480";
 constexpr const char* kGrid = "#e6e9ee";
