@@ -2,10 +2,8 @@
 // file, line and column.
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "tests/element/element_test_rig.h"
+#include "tests/temporary_folder.h"
 
 namespace repose {
 namespace {
@@ -14,16 +12,9 @@ using ::testing::HasSubstr;
 
 class PathFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "repose-path-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& text) const {
-    const std::string file = (folder_ / "path.csv").string();
-    std::ofstream(file) << text;
-    return file;
+    folder_.write("path.csv", text);
+    return folder_.path("path.csv");
   }
   Path path_of(const std::string& text, double pressure = 0.0) const {
     auto path = read_path(write(text), pressure, 1.0);
@@ -35,10 +26,10 @@ class PathFile : public ::testing::Test {
     const auto path = read_path(write(text), 0.0, 1.0);
     if (path) return "";
     EXPECT_EQ(path.error().kind, ErrorKind::kBadScene);
-    return path.error().text().substr(folder_.string().size() + 1);
+    return path.error().text().substr(folder_.path().string().size() + 1);
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(PathFile, GradientsOfVelocity_AreTheShearOfTheBuiltInPath) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/state/difference.h"
-#include "tests/physics/element_rig.h"
+#include "tests/physics/strained_box.h"
 
 namespace repose {
 namespace {
@@ -12,7 +12,7 @@ const char* const kKey = "\"plastic_strain\": {}";
 constexpr const char* kChannel = "equivalent_plastic_strain";
 
 TEST(PlasticStrain, ConstantVolumeShear_GrowsByTheRateOverRootThree) {
-  Element element("", kKey);
+  StrainedBox element("", kKey);
   element.compress(1e-3);
   const double rate = 2.0, dt = 1e-5;
   while (element.channel(kChannel) == 0.0) element.shear(rate, dt);
@@ -27,14 +27,14 @@ TEST(PlasticStrain, ConstantVolumeShear_GrowsByTheRateOverRootThree) {
 }
 
 TEST(PlasticStrain, ElasticElement_HasNone) {
-  Element element("", kKey);
+  StrainedBox element("", kKey);
   element.compress(1e-3);
   for (int step = 0; step < 10; ++step) element.shear(1.0, 1e-6);
   EXPECT_EQ(element.channel(kChannel), 0.0);
 }
 
 TEST(PlasticStrain, VolumeCorrectionAndTheTip_CountNoChangeOfVolume) {
-  Element element("", "\"volume_correction\": {}, " + std::string(kKey));
+  StrainedBox element("", "\"volume_correction\": {}, " + std::string(kKey));
   element.compress(1e-3);
   const double out = 1.0, dt = 1e-3;
   for (const double sign : {1.0, -1.0}) {  // it opens, and closes again

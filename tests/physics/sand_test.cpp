@@ -2,7 +2,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "tests/physics/element_rig.h"
+#include "tests/physics/strained_box.h"
 
 namespace repose {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// mu = tau / sigma_n of simple shear, and the friction angle of that cone in triaxial compression, degrees.
-double friction_of(const Element& element) {
+double friction_of(const StrainedBox& element) {
   return std::abs(element.stress(1)) / -element.stress(3);
 }
 
@@ -27,7 +27,7 @@ double triaxial_slope(double degrees) {
 
 /// Shears at constant volume until the plastic shear reaches `most`; the largest relative error of mu against
 /// 3 alpha(q) / sqrt 2 once the sand yields.
-double largest_error(Element& element, double most, double& peak_angle, double& peak_shear) {
+double largest_error(StrainedBox& element, double most, double& peak_angle, double& peak_shear) {
   double error = 0.0;
   peak_angle = 0.0;
   for (int step = 0; element.channel("plastic_shear") < most && step < 200000; ++step) {
@@ -49,7 +49,7 @@ double largest_error(Element& element, double most, double& peak_angle, double& 
 }
 
 TEST(Hardening, ConstantVolumeShear_FollowsTheAngleOfItsShear) {
-  Element element(R"("hardening": {"h0": 35, "h1": 9, "h2": 0.2, "h3": 10})");
+  StrainedBox element(R"("hardening": {"h0": 35, "h1": 9, "h2": 0.2, "h3": 10})");
   element.compress(1e-3);  // small, so that normal stresses differ little
   double angle = 0.0, shear = 0.0;
   const double error = largest_error(element, 7.0, angle, shear);
@@ -62,14 +62,14 @@ TEST(Hardening, ConstantVolumeShear_FollowsTheAngleOfItsShear) {
 }
 
 TEST(Hardening, OtherLaw_IsTold) {
-  Element element(R"("hardening": {"h0": 35, "h1": 6, "h2": 0.2, "h3": 10})");
+  StrainedBox element(R"("hardening": {"h0": 35, "h1": 6, "h2": 0.2, "h3": 10})");
   element.compress(3e-3);
   double angle = 0.0, shear = 0.0;
   EXPECT_GT(largest_error(element, 3.0, angle, shear), 0.05);
 }
 
 TEST(Hardening, Start_IsH0LessH3) {
-  Element element(R"("hardening": {})");
+  StrainedBox element(R"("hardening": {})");
   element.compress(3e-3);
   for (int step = 0; step < 1000; ++step) element.shear(1.0, 1e-5);
   EXPECT_NEAR(friction_of(element), 3.0 / std::sqrt(2.0) * triaxial_slope(25.0), 0.01);
@@ -77,14 +77,14 @@ TEST(Hardening, Start_IsH0LessH3) {
 
 TEST(Hardening, Flight_HardensOnlyIfItMay) {
   for (const bool in_flight : {true, false}) {
-    Element element(std::string(R"("hardening": {"in_flight": )") + (in_flight ? "true}" : "false}"));
+    StrainedBox element(std::string(R"("hardening": {"in_flight": )") + (in_flight ? "true}" : "false}"));
     element.step({1, 0, 0, 0, 0, 0, 0, 0, 0}, 0.01);
     EXPECT_NEAR(element.channel("plastic_shear"), in_flight ? std::log(1.01) : 0.0, 1e-12);
   }
 }
 
 TEST(Cohesion, ShearWithoutPressure_HoldsItsStrength) {
-  Element element(R"("friction_angle": 30, "cohesion": {"strength": 2000})");
+  StrainedBox element(R"("friction_angle": 30, "cohesion": {"strength": 2000})");
   for (int step = 0; step < 4000; ++step) element.shear(1.0, 1e-5);
   const double phi = 30.0 / kDegrees;
   const double strength = std::sqrt(2.0 / 3.0) * 6.0 * 2000.0 * std::cos(phi) / (3.0 - std::sin(phi));
@@ -93,7 +93,8 @@ TEST(Cohesion, ShearWithoutPressure_HoldsItsStrength) {
 }
 
 TEST(Cohesion, PlaneStrain_HasCoulombsCone) {
-  Element element(R"("friction_angle": 30, "cone_matching": "plane_strain", "cohesion": {"strength": 2000})");
+  StrainedBox element(
+      R"("friction_angle": 30, "cone_matching": "plane_strain", "cohesion": {"strength": 2000})");
   element.compress(5e-3);
   for (int step = 0; step < 4000; ++step) element.shear(1.0, 1e-5);
   const double phi = 30.0 / kDegrees;
@@ -105,7 +106,7 @@ TEST(Cohesion, PlaneStrain_HasCoulombsCone) {
 TEST(Cohesion, TensionOnAllSides_EndsAtTheApexOrAtTheCut) {
   for (const double cut : {-1.0, 500.0, 0.0}) {
     const std::string limit = cut < 0.0 ? "" : ", \"tension\": {\"limit\": " + std::to_string(cut) + "}";
-    Element element(R"("friction_angle": 30, "cohesion": {"strength": 1000)" + limit + "}");
+    StrainedBox element(R"("friction_angle": 30, "cohesion": {"strength": 1000)" + limit + "}");
     for (int step = 0; step < 1000; ++step) element.step({1, 0, 0, 0, 1, 0, 0, 0, 1}, 1e-5);
     const double apex = 1000.0 / std::tan(30.0 / kDegrees);
     EXPECT_NEAR(-element.pressure(), cut < 0.0 ? apex : cut, 1e-6 * apex) << cut;
@@ -114,7 +115,7 @@ TEST(Cohesion, TensionOnAllSides_EndsAtTheApexOrAtTheCut) {
 
 /// Pulled along one axis and pressed along another: the pull ends at its limit, the pressure goes on.
 TEST(Cohesion, TensionAlongOneAxis_EndsAtTheCut) {
-  Element element(R"("friction_angle": 30, "cohesion": {"strength": 20000, "tension": {"limit": 300}})");
+  StrainedBox element(R"("friction_angle": 30, "cohesion": {"strength": 20000, "tension": {"limit": 300}})");
   for (int step = 0; step < 1000; ++step) element.step({1, 0, 0, 0, -0.5, 0, 0, 0, 0}, 1e-6);
   EXPECT_NEAR(element.stress(0), 300.0, 1e-6);
   EXPECT_LT(element.stress(3), -50.0);
@@ -125,7 +126,7 @@ TEST(Cohesion, TensionAlongOneAxis_EndsAtTheCut) {
 }
 
 TEST(Cohesion, NoFriction_IsVonMises) {
-  Element element(R"("friction_angle": 0, "cohesion": {"strength": 1500})");
+  StrainedBox element(R"("friction_angle": 0, "cohesion": {"strength": 1500})");
   element.compress(5e-3);
   for (int step = 0; step < 4000; ++step) element.shear(1.0, 1e-5);
   // phi -> 0 in triaxial compression: c_C = 2 sqrt(2/3) c.
@@ -136,23 +137,24 @@ TEST(Moisture, Cohesion_IsLinearInSaturation) {
   const double phi = 30.0 / kDegrees;
   const double per_pascal = std::sqrt(2.0 / 3.0) * 6.0 * std::cos(phi) / (3.0 - std::sin(phi));
   for (const double w : {0.0, 0.25, 1.0}) {
-    Element element(R"("friction_angle": 30, "cohesion": {"strength": 3000},
+    StrainedBox element(R"("friction_angle": 30, "cohesion": {"strength": 3000},
                        "moisture": {"cohesion_change": -2000, "initial": )" +
-                    std::to_string(w) + "}");
+                        std::to_string(w) + "}");
     for (int step = 0; step < 5000; ++step) element.shear(1.0, 1e-5);
     EXPECT_NEAR(element.deviator() / (per_pascal * (3000.0 - 2000.0 * w)), 1.0, 4e-3) << w;
   }
 }
 
 TEST(Moisture, MoreThanAllCohesion_LeavesNone) {
-  Element element(R"("cohesion": {"strength": 1000}, "moisture": {"cohesion_change": -2000, "initial": 1})");
+  StrainedBox element(
+      R"("cohesion": {"strength": 1000}, "moisture": {"cohesion_change": -2000, "initial": 1})");
   for (int step = 0; step < 1000; ++step) element.shear(1.0, 1e-5);
   EXPECT_NEAR(element.deviator(), 0.0, 1e-9);
 }
 
 TEST(Moisture, Wetting_FillsWhatLiesWithinWhileItRuns) {
-  Element element(R"("moisture": {"cohesion_change": 1000})",
-                  R"("wetting": [{"name": "rain", "rate": 0.5, "start": 0.5, "end": 1.5,
+  StrainedBox element(R"("moisture": {"cohesion_change": 1000})",
+                      R"("wetting": [{"name": "rain", "rate": 0.5, "start": 0.5, "end": 1.5,
       "shape": {"type": "box", "lower": [-1, -1, -1], "upper": [1, 1, 1]}},
       {"name": "elsewhere", "rate": 1, "shape": {"type": "box", "lower": [5, 5, 5], "upper": [6, 6, 6]}}])");
   for (int step = 0; step < 200; ++step) element.shear(0.0, 0.01);
@@ -160,7 +162,7 @@ TEST(Moisture, Wetting_FillsWhatLiesWithinWhileItRuns) {
 }
 
 TEST(Dilatancy, ConstantVolumeShear_PressesByWhatItOpens) {
-  Element element(
+  StrainedBox element(
       R"("friction_angle": 30, "cone_matching": "plane_strain", "dilatancy": {"angle": 10, "limit": 1e6})");
   element.compress(3e-3);
   for (int step = 0; step < 2000; ++step) element.shear(1.0, 1e-5);
@@ -175,15 +177,15 @@ TEST(Dilatancy, ConstantVolumeShear_PressesByWhatItOpens) {
 }
 
 TEST(Dilatancy, LongShear_FadesAtItsLimit) {
-  Element element(R"("friction_angle": 30, "dilatancy": {"angle": 10, "limit": 0.02})");
+  StrainedBox element(R"("friction_angle": 30, "dilatancy": {"angle": 10, "limit": 0.02})");
   element.compress(3e-3);
   for (int step = 0; step < 60000; ++step) element.shear(1.0, 1e-4);
   EXPECT_NEAR(element.channel("dilation"), 0.02, 1e-5);
 }
 
 TEST(Dilatancy, WithVolumeCorrection_IsNoGapToBeClosed) {
-  Element element(R"("friction_angle": 30, "dilatancy": {"angle": 10, "limit": 0.02})",
-                  R"("volume_correction": {})");
+  StrainedBox element(R"("friction_angle": 30, "dilatancy": {"angle": 10, "limit": 0.02})",
+                      R"("volume_correction": {})");
   element.compress(3e-3);
   for (int step = 0; step < 20000; ++step) element.shear(1.0, 1e-5);
   EXPECT_GT(element.channel("dilation"), 0.01);
@@ -193,7 +195,7 @@ TEST(Dilatancy, WithVolumeCorrection_IsNoGapToBeClosed) {
 TEST(RateFriction, SteadyShear_IsThatOfItsInertialNumber) {
   constexpr double kRise = 0.3, kThreshold = 0.28, kDiameter = 0.01, kDensity = 2500.0;
   for (const double rate : {0.1, 1.0, 10.0}) {
-    Element element(R"("friction_angle": 25, "cone_matching": "plane_strain",
+    StrainedBox element(R"("friction_angle": 25, "cone_matching": "plane_strain",
       "rate_friction": {"rise": 0.3, "threshold": 0.28, "grain_diameter": 0.01, "grain_density": 2500})");
     element.compress(1e-3);
     for (int step = 0; step < 5000; ++step) element.shear(rate, 1e-5 / rate);
@@ -205,7 +207,7 @@ TEST(RateFriction, SteadyShear_IsThatOfItsInertialNumber) {
 
 /// A step that is longer than the law's own time does not overshoot: the rate is that of the step's end.
 TEST(RateFriction, LongSteps_StayOnTheLaw) {
-  Element element(R"("friction_angle": 25, "cone_matching": "plane_strain",
+  StrainedBox element(R"("friction_angle": 25, "cone_matching": "plane_strain",
     "rate_friction": {"rise": 0.3, "threshold": 0.28, "grain_diameter": 0.01, "grain_density": 2500})");
   element.compress(1e-2);
   for (int step = 0; step < 300; ++step) element.shear(10.0, 1e-3);
@@ -231,7 +233,7 @@ TEST(Variation, Noise_IsSmoothBoundedAndCentred) {
 }
 
 TEST(Variation, Friction_IsTheParticlesOwn) {
-  Element element(R"("friction_angle": 30, "variation": {"friction": 0.3, "length": 0.1, "seed": 7})");
+  StrainedBox element(R"("friction_angle": 30, "variation": {"friction": 0.3, "length": 0.1, "seed": 7})");
   element.compress(3e-3);
   for (int step = 0; step < 2000; ++step) element.shear(1.0, 1e-5);
   double low = 2.0, high = 0.0;
@@ -251,7 +253,7 @@ TEST(Prestress, Stress_IsThatOfDepthAndLoad) {
   for (const auto& [sand, entry, lateral] :
        {std::tuple(R"("friction_angle": 30)", "", 0.3 / 0.7), std::tuple(R"("friction_angle": 10)", "", 0.0),
         std::tuple(R"("friction_angle": 30)", R"(, "lateral": 0.8)", 0.8)}) {
-    const Element element(
+    const StrainedBox element(
         std::string(R"("density": 2000, "poisson_ratio": 0.3, )") + sand,
         std::string(R"("prestress": [{"body": "box", "surface": 0.5, "load": 100)") + entry + "}]");
     const double root = std::sqrt(2.0 / 3.0), alpha = triaxial_slope(10.0);
@@ -266,8 +268,8 @@ TEST(Prestress, Stress_IsThatOfDepthAndLoad) {
 }
 
 TEST(Sand, ShapedByNothing_IsThePlainMap) {
-  Element plain(R"("friction_angle": 30)"), shaped(R"("friction_angle": 30, "cohesion": {"strength": 0})");
-  for (Element* element : {&plain, &shaped}) {
+  StrainedBox plain(R"("friction_angle": 30)"), shaped(R"("friction_angle": 30, "cohesion": {"strength": 0})");
+  for (StrainedBox* element : {&plain, &shaped}) {
     element->compress(3e-3);
     for (int step = 0; step < 200; ++step) element->step({0.3, 1, -0.2, 0.1, -0.5, 0.4, 0, 0.2, 0.1}, 1e-4);
   }

@@ -1,6 +1,5 @@
-// Repose tests: order and hash of a state. Order must keep every particle with all that belongs to it, and come
-// out the same whatever it was before and however many threads make it; the hash must see every bit and no
-// place in memory.
+// Repose tests: the order of a state. It must keep every particle with all that belongs to it, and come out the
+// same whatever it was before and however many threads make it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,68 +7,13 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <random>
 
-#include "engine/state/block_sort.h"
 #include "engine/state/state_hash.h"
+#include "tests/engine/state/marked_state.h"
 
 namespace repose {
 namespace {
-
-/// A value that only channel c of particle id has.
-float mark(std::uint32_t id, int c) {
-  return static_cast<float>(id * 32 + static_cast<std::uint32_t>(c));
-}
-
-/// Particles at random in the cells from `lower` to below `upper`, in some sets; every channel but the position
-/// is marked.
-struct Making {
-  Index3 lower{-9, -9, -9}, upper{9, 9, 9};
-  std::uint32_t sets = 2, count = 2000;  ///< in each
-  std::uint32_t storage_seed = 0;        ///< the order in which they are handed over
-  Topology topology{};
-  Index3 origin{0, 0, 0};
-  Ownership ownership{};
-};
-
-State<float> make_state(const Making& making) {
-  State<float> state;
-  state.spacing = 0.25;
-  state.topology = making.topology;
-  state.origin_cells = making.origin;
-  std::vector<std::vector<Index3>> cells(making.sets);
-  for (std::uint32_t k = 0; k < making.sets; ++k) {
-    ParticleSet<float>& set = state.sets.emplace_back();
-    if (k == 1) set.extra.push_back({"gained", {}});
-    set.allocate(making.count);
-    cells[k].resize(making.count);
-    std::vector<std::uint32_t> place(making.count);
-    std::iota(place.begin(), place.end(), 0u);
-    if (making.storage_seed > 0) std::shuffle(place.begin(), place.end(), std::mt19937(making.storage_seed));
-    std::mt19937 random(k + 11);
-    for (std::uint32_t i = 0; i < making.count; ++i) {
-      const std::size_t p = place[i];
-      set.id[p] = k * making.count + i;
-      int c = 0;
-      set.for_each_real([&](AlignedArray<float>& channel) { channel[p] = mark(set.id[p], c++); });
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::uniform_int_distribution<std::int32_t> cell(making.lower[axis], making.upper[axis] - 1);
-        const bool flat = static_cast<int>(axis) == making.topology.flat_axis;
-        cells[k][p][axis] = (flat ? 0 : cell(random)) + making.origin[axis];
-        // Multiples of 1/64 stay exact whatever block they are relative to.
-        set.position[axis][p] = flat ? 0.5f : static_cast<float>(random() % 64) / 64.0f;
-      }
-    }
-  }
-  place_in_blocks(state, cells, making.ownership);
-  return state;
-}
-
-void order(State<float>& state, int threads = 2, const Ownership& ownership = {}) {
-  Threads pool(threads);
-  BlockSort<float>().sort(state, pool, ownership);
-}
 
 /// Calls visit(set, occupied block, p) for every particle.
 template <class Visit>
@@ -364,63 +308,6 @@ TEST(BlockSort, MillionInOneCell_InSeconds) {
   std::printf("a million particles in one cell, in random order: %.2f s on one thread\n", seconds);
   EXPECT_LT(seconds, 5.0);
   for (const auto& set : state.sets) EXPECT_TRUE(std::is_sorted(set.id.data(), set.id.data() + set.count));
-}
-
-TEST(StateHash, OrderOfStorage_DoesNotMatter) {
-  State<float> state = make_state({});
-  order(state);
-  const std::uint64_t hash = state_hash(state);
-  State<float> shuffled = make_state({.storage_seed = 3});  // placed in blocks, not sorted within them
-  State<float> plain = make_state({});
-  EXPECT_EQ(state_hash(shuffled), state_hash(plain));
-  for (auto& set : state.sets) {
-    ASSERT_GE(set.begin[1], 2u);
-    set.for_each_real([](AlignedArray<float>& channel) { std::swap(channel[0], channel[1]); });
-    std::swap(set.id[0], set.id[1]);
-  }
-  EXPECT_EQ(state_hash(state), hash);
-}
-
-TEST(StateHash, AnyBitOfAnyChannel_Matters) {
-  State<float> state = make_state({});
-  order(state);
-  const std::uint64_t hash = state_hash(state);
-  for (auto& set : state.sets) {
-    set.for_each_real([&](AlignedArray<float>& channel) {
-      for (const int bit : {0, 22, 31}) {
-        for (const std::size_t p : {std::size_t{0}, set.count / 2, set.count - 1}) {
-          const float before = channel[p];
-          channel[p] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(before) ^ (1u << bit));
-          EXPECT_NE(state_hash(state), hash) << "bit " << bit << " of particle " << p;
-          channel[p] = before;
-        }
-      }
-    });
-    ++set.id[7];
-    EXPECT_NE(state_hash(state), hash);
-    --set.id[7];
-  }
-  EXPECT_EQ(state_hash(state), hash);
-  ++state.counters.step;
-  EXPECT_NE(state_hash(state), hash);
-}
-
-TEST(StateHash, BlockOfTheParticles_Matters) {
-  State<float> here = make_state({}), there = make_state({.lower = {-5, -9, -9}, .upper = {13, 9, 9}});
-  order(here);
-  order(there);
-  EXPECT_NE(state_hash(here), state_hash(there)) << "the same offsets in other blocks";
-}
-
-TEST(StateHash, ValuesThatChangePlaces_Matter) {
-  State<float> state = make_state({});
-  order(state);
-  const std::uint64_t hash = state_hash(state);
-  std::swap(state.sets[0].velocity[0][3], state.sets[0].velocity[1][3]);
-  EXPECT_NE(state_hash(state), hash) << "between channels";
-  std::swap(state.sets[0].velocity[0][3], state.sets[0].velocity[1][3]);
-  std::swap(state.sets[0].velocity[0][3], state.sets[0].velocity[0][4]);
-  EXPECT_NE(state_hash(state), hash) << "between particles";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// Repose tests: one element of material, driven by a velocity gradient through the passes that a scene compiles
-// to: trial strain, what effects add around the return map, and the return map. No grid, so laws hold to
-// rounding or to the size of a step.
+// Repose tests: a box of sand, driven by a velocity gradient through the passes that a scene compiles to: trial
+// strain, what effects add around the return map, and the return map. No grid, so laws hold to rounding or to
+// the size of a step. It has many particles at their places, since variation goes by them, and strains that are
+// set at will, where an Element (engine/element) is one point that only a path leads anywhere.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,10 +17,10 @@
 
 namespace repose {
 
-class Element {
+class StrainedBox {
  public:
   /// `sand` are further keys of the material: "\"friction_angle\": 30"; `scene` further keys of the scene.
-  explicit Element(const std::string& sand, const std::string& scene = "") {
+  explicit StrainedBox(const std::string& sand, const std::string& scene = "") {
     const std::string text = R"json({"repose": 1, "name": "element", "grid": {"spacing": 0.1},
       "bodies": [{"name": "box", "material": "sand", "particles_per_cell": 1,
                   "shape": {"type": "box", "lower": [0, 0, 0], "upper": [0.4, 0.4, 0.4]}}],
