@@ -19,9 +19,9 @@ namespace repose::api {
 /// A scene as text, with what the host has said of it.
 struct SceneText {
   std::string text, name, folder;
-  ReadOptions options;
+  ReadOptions options = {};
   /// Colliders that the host leads: by poses, or by meshes at a rate above 0.
-  std::vector<std::pair<std::string, double>> led;
+  std::vector<std::pair<std::string, double>> led = {};
   VdbReader vdb_reader = {};
 
   Result<Scene> read() const;
@@ -55,7 +55,7 @@ struct EngineObject {
 
 struct PointsObject {
   PointCloud cloud;
-  int turn = 0;  ///< of P and v: 1 from y up to z up, -1 the other way
+  int turn = 0;  ///< of vectors and tensors: 1 from y up to z up, -1 the other way
 };
 
 Registry<SceneObject>& scenes();

@@ -6,7 +6,7 @@
 
 #include "api/half.h"
 #include "api/objects.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/attributes.h"
 
 namespace repose::api {
 
@@ -16,24 +16,6 @@ Registry<PointsObject>& points() {
 }
 
 namespace {
-
-struct KnownAttribute {
-  std::string_view name;
-  OutputAttribute attribute;
-};
-constexpr KnownAttribute kKnownAttributes[] = {
-    {"stress", OutputAttribute::kStress},
-    {"pressure", OutputAttribute::kPressure},
-    {"density", OutputAttribute::kDensity},
-    {"elastic_strain", OutputAttribute::kElasticStrain},
-    {"speed", OutputAttribute::kSpeed},
-    {"age", OutputAttribute::kAge},
-    {"channels", OutputAttribute::kChannels},
-    {"shear_rate", OutputAttribute::kShearRate},
-    {"inertial_number", OutputAttribute::kInertialNumber},
-    {"plastic_strain", OutputAttribute::kPlasticStrain},
-    {"velocity_gradient", OutputAttribute::kVelocityGradient},
-};
 
 /// Names of the numbers that effects and hosts keep: "Cd" of "Cd.x", "Cd.y" and "Cd.z".
 std::vector<std::string> kept_names(const Simulation& simulation) {
@@ -61,11 +43,10 @@ std::string_view parse_attributes(std::string_view list, const std::vector<std::
     while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
     while (!name.empty() && name.back() == ' ') name.remove_suffix(1);
     list.remove_prefix(std::min(comma + 1, list.size()));
-    const auto* const end = std::end(kKnownAttributes);
-    const auto* const known = std::find_if(std::begin(kKnownAttributes), end,
-                                           [&](const KnownAttribute& k) { return k.name == name; });
-    if (known != end) {
-      add(wanted.attributes, known->attribute);
+    const auto* const known = std::find_if(std::begin(kOutputAttributes), std::end(kOutputAttributes),
+                                           [&](const Choice& choice) { return choice.name == name; });
+    if (known != std::end(kOutputAttributes)) {
+      add(wanted.attributes, static_cast<OutputAttribute>(known - std::begin(kOutputAttributes)));
     } else if (std::find(kept.begin(), kept.end(), name) != kept.end()) {
       add(wanted.channels, std::string(name));
     } else {
@@ -95,27 +76,31 @@ void turn_tensor(int turn, float* t) {
   t[4] *= -1.0f;
 }
 
-/// By rows: those of x y z are turned, then those of each row.
-void turn_gradient(int turn, float* g) {
-  if (turn == 0) return;
-  float turned[9];
-  for (int row = 0; row < 3; ++row) {
-    const int from = row == 0 ? 0 : 3 - row;
-    const float sign = row == (turn > 0 ? 1 : 2) ? -1.0f : 1.0f;
-    const float* const g_row = g + 3 * from;
-    turned[3 * row] = sign * g_row[0];
-    turned[3 * row + 1] = sign * (turn > 0 ? -g_row[2] : g_row[2]);
-    turned[3 * row + 2] = sign * (turn > 0 ? g_row[1] : -g_row[1]);
-  }
-  std::copy_n(turned, 9, g);
-}
-
 /// x y z as the frame of the copy has them.
 template <class Number>
 void put_turned(const Number* from, int turn, Number* to) {
   to[0] = from[0];
   to[1] = turn == 0 ? from[1] : turn > 0 ? -from[2] : from[2];
   to[2] = turn == 0 ? from[2] : turn > 0 ? from[1] : -from[1];
+}
+
+/// L of the frame's x y z, by rows: its columns are turned, then its rows.
+void turn_gradient(int turn, float* l) {
+  float columns[9];
+  for (int column = 0; column < 3; ++column) {
+    const float from[3] = {l[column], l[3 + column], l[6 + column]};
+    float to[3];
+    put_turned(from, turn, to);
+    for (int row = 0; row < 3; ++row) columns[3 * row + column] = to[row];
+  }
+  for (int row = 0; row < 3; ++row) put_turned(columns + 3 * row, turn, l + 3 * row);
+}
+
+repose_status unknown_attribute(const std::vector<std::string>& kept, std::string_view name) {
+  std::string names;
+  for (const Choice& known : kOutputAttributes) names += (names.empty() ? "" : ", ") + std::string(known.name);
+  for (const std::string& each : kept) names += ", " + each;
+  return fail({ErrorKind::kUsage, "no such attribute; choose among " + names, std::string(name)});
 }
 
 repose_status unknown_attribute(const PointsObject& object, std::string_view name) {
@@ -157,6 +142,21 @@ void copy(const PointsObject& object, std::string_view name, float* values) {
     turn_gradient(object.turn, values + 9 * p);
 }
 
+/// Runs read(copy, count) where an attribute's `count` numbers have room.
+template <class Read>
+repose_status read_points(repose_points handle, const char* attribute, const void* values, std::size_t capacity,
+                          const Read& read) noexcept {
+  return with_points(handle, [&](const PointsObject& object) -> repose_status {
+    if (attribute == nullptr) return null_argument("attribute");
+    if (values == nullptr) return null_argument("values");
+    const std::size_t count = static_cast<std::size_t>(components(object, attribute)) * object.cloud.size();
+    if (components(object, attribute) == 0) return unknown_attribute(object, attribute);
+    if (capacity < count) return too_small(count);
+    read(object, count);
+    return REPOSE_OK;
+  });
+}
+
 }  // namespace
 }  // namespace repose::api
 
@@ -174,12 +174,7 @@ repose_status repose_points_create(repose_engine handle, const repose_points_opt
       if (options->attributes != nullptr) {
         const std::vector<std::string> kept = kept_names(*engine.simulation);
         const std::string_view unknown = parse_attributes(options->attributes, kept, wanted);
-        std::string names;
-        for (const KnownAttribute& known : kKnownAttributes)
-          names += (names.empty() ? "" : ", ") + std::string(known.name);
-        for (const std::string& name : kept) names += ", " + name;
-        if (!unknown.empty())
-          return fail({ErrorKind::kUsage, "no such attribute; choose among " + names, std::string(unknown)});
+        if (!unknown.empty()) return unknown_attribute(kept, unknown);
         for (const OutputAttribute attribute : wanted.attributes) {
           const std::string lacks = engine.simulation->lacking(attribute);
           if (!lacks.empty()) return fail({ErrorKind::kUsage, lacks, "options.attributes"});
@@ -222,31 +217,16 @@ repose_status repose_points_components(repose_points handle, const char* attribu
 }
 
 repose_status repose_points_read(repose_points handle, const char* attribute, float* values, size_t capacity) {
-  return with_points(handle, [&](const PointsObject& object) -> repose_status {
-    if (attribute == nullptr) return null_argument("attribute");
-    if (values == nullptr) return null_argument("values");
-    const int per_particle = components(object, attribute);
-    if (per_particle == 0) return unknown_attribute(object, attribute);
-    const std::size_t needed = static_cast<std::size_t>(per_particle) * object.cloud.size();
-    if (capacity < needed) return too_small(needed);
-    copy(object, attribute, values);
-    return REPOSE_OK;
-  });
+  return read_points(handle, attribute, values, capacity,
+                     [&](const PointsObject& object, std::size_t) { copy(object, attribute, values); });
 }
 
 repose_status repose_points_read_half(repose_points handle, const char* attribute, uint16_t* values,
                                       size_t capacity) {
-  return with_points(handle, [&](const PointsObject& object) -> repose_status {
-    if (attribute == nullptr) return null_argument("attribute");
-    if (values == nullptr) return null_argument("values");
-    const int per_particle = components(object, attribute);
-    if (per_particle == 0) return unknown_attribute(object, attribute);
-    const std::size_t needed = static_cast<std::size_t>(per_particle) * object.cloud.size();
-    if (capacity < needed) return too_small(needed);
-    std::vector<float> whole(needed);
+  return read_points(handle, attribute, values, capacity, [&](const PointsObject& object, std::size_t count) {
+    std::vector<float> whole(count);
     copy(object, attribute, whole.data());
     std::transform(whole.begin(), whole.end(), values, half_of);
-    return REPOSE_OK;
   });
 }
 

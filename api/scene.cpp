@@ -109,8 +109,7 @@ repose_status repose_scene_from_text(const char* text, size_t length, const char
   return guarded([&]() -> repose_status {
     if (text == nullptr) return null_argument("text");
     if (scene == nullptr) return null_argument("scene");
-    SceneText made{
-        {text, length}, name == nullptr ? "scene" : name, folder == nullptr ? "." : folder, {}, {}, {}};
+    SceneText made{{text, length}, name == nullptr ? "scene" : name, folder == nullptr ? "." : folder};
     if (const repose_status known = read_options(options, made.options); known != REPOSE_OK) return known;
     return give(std::move(made), true, scene);
   });
@@ -119,7 +118,7 @@ repose_status repose_scene_from_text(const char* text, size_t length, const char
 repose_status repose_scene_empty(const char* folder, const repose_scene_options* options, repose_scene* scene) {
   return guarded([&]() -> repose_status {
     if (scene == nullptr) return null_argument("scene");
-    SceneText made{"{}", "scene", folder == nullptr ? "." : folder, {}, {}, {}};
+    SceneText made{"{}", "scene", folder == nullptr ? "." : folder};
     if (const repose_status known = read_options(options, made.options); known != REPOSE_OK) return known;
     return give(std::move(made), false, scene);
   });

@@ -59,7 +59,7 @@ TEST(ApiVolume, TensorsInAnotherFrame_AreTurnedLikeVectors) {
   Engine engine = box_engine(1, R"(, "gravity": {"acceleration": [3, -9.81, -5]})");
   for (int frame = 0; frame < 6; ++frame) engine.advance_frame();
   repose_points_options options = repose_points_options_init();
-  options.attributes = "stress,elastic_strain,pressure";
+  options.attributes = "stress,elastic_strain,pressure,velocity_gradient";
   const Points y_up = engine.points(options);
   options.up = REPOSE_UP_Z;
   const Points z_up = engine.points(options);
@@ -82,6 +82,14 @@ TEST(ApiVolume, TensorsInAnotherFrame_AreTurnedLikeVectors) {
     EXPECT_GT(most, 0.0) << "no shear, so nothing is tested";
   }
   EXPECT_EQ(y_up.read("pressure"), z_up.read("pressure"));
+  const std::vector<float> plain = y_up.read("velocity_gradient"), turned = z_up.read("velocity_gradient");
+  ASSERT_EQ(plain.size(), 9 * y_up.size());
+  // x y z is x z -y there: where each number of L comes from, and its sign.
+  constexpr int kFrom[9] = {0, 2, 1, 6, 8, 7, 3, 5, 4}, kSign[9] = {1, -1, 1, -1, 1, -1, 1, -1, 1};
+  for (std::size_t p = 0; p < y_up.size(); ++p) {
+    for (std::size_t k = 0; k < 9; ++k)
+      ASSERT_EQ(turned[9 * p + k], static_cast<float>(kSign[k]) * plain[9 * p + std::size_t(kFrom[k])]) << k;
+  }
 }
 
 std::size_t place(const repose_lattice& lattice, std::size_t i, std::size_t j, std::size_t k) {
