@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "engine/io/surface.h"
+#include "engine/simulation/volumes.h"
 
 namespace repose {
 
@@ -42,22 +42,11 @@ Result<void> FrameFiles::write_points(const PointCloud& points, std::int64_t fra
 }
 
 Result<void> FrameFiles::write_volumes(const PointCloud& points, std::int64_t frame) const {
-  const double spacing = scene_.grid.spacing;
-  const SurfaceDescription& surface = scene_.output.surface;
-  const FogDescription& fog = scene_.output.fog;
   Result<void> written;
-  if (surface.given) {
-    const SurfaceOptions options{.voxel = surface.voxel > 0.0 ? surface.voxel : 0.5 * spacing,
-                                 .radius = surface.radius * spacing,
-                                 .smoothing = static_cast<int>(surface.smoothing),
-                                 .flat_axis = scene_.grid.plane_strain};
-    written = write_surface(points, options, folder_.frame("surface", frame, "vdb"));
-  }
-  if (written && fog.given) {
-    const FogOptions options{.voxel = fog.voxel > 0.0 ? fog.voxel : spacing,
-                             .flat_axis = scene_.grid.plane_strain};
-    written = write_fog(points, options, folder_.frame("fog", frame, "vdb"));
-  }
+  if (scene_.output.surface.given)
+    written = write_surface(points, surface_options(scene_), folder_.frame("surface", frame, "vdb"));
+  if (written && scene_.output.fog.given)
+    written = write_fog(points, fog_options(scene_), folder_.frame("fog", frame, "vdb"));
   return written;
 }
 

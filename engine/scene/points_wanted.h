@@ -28,13 +28,11 @@ struct PointsWanted {
   ///  pressure        -tr sigma / 3, Pa
   ///  elastic_strain  eps = log(b) / 2
   ///  density         rho exp(-tr eps - v_c), kg/m^3: what flow at constant volume and the return to the tip
-  ///  have
-  ///                  done to the volume is in v_c alone (volume_correction), so that without it sand that has
-  ///                  come apart shows the density at which it last held together
+  ///                  have done to the volume is in v_c alone (volume_correction), so that without it sand
+  ///                  that has come apart shows the density at which it last held together
   ///  speed           |v|, m/s
-  ///  age             time of the state less that at which the particle began, s; not a number where the scene
-  ///  has
-  ///                  no key "age"
+  ///  age             time of the state less that at which the particle began, s; not a number where the
+  ///                  scene has no key "age"
   ///  velocity_gradient
   ///                  L_ij = d v_i / d x_j by rows, xx xy xz yx yy yz zx zy zz, 1/s: the affine matrix C that
   ///                  particles keep; not a number where the transfer keeps none
@@ -46,8 +44,8 @@ struct PointsWanted {
   ///                  grains
   ///  plastic_strain  sum over steps of sqrt(2/3) |dev(trial - returned)|; 0 for what does not yield; not a
   ///                  number for sand where the scene has no key "plastic_strain"
-  ///  channels        each number that an effect keeps, under its own name, and what hosts keep; 0 where a set
-  ///  has none
+  ///  channels        each number that an effect keeps, under its own name, and what hosts keep; 0 where a
+  ///                  set has none
   std::vector<OutputAttribute> attributes;
   bool mass = false;                    ///< PointCloud::mass
   std::vector<std::string> channels{};  ///< some of the channels, by name, in the order of the sets

@@ -17,20 +17,6 @@ constexpr Choice kUpAxes[] = {{"y", "y is up"}, {"z", "z is up"}};
 constexpr Choice kSamplings[] = {
     {"jittered", "each cell is cut into equal parts with one particle at random in each"},
     {"poisson_disk", "no two particles closer than a radius, Bridson 2007"}};
-constexpr Choice kAttributes[] = {
-    {"stress", "Cauchy stress, Pa, tension positive; 6 components xx yy zz xy yz xz"},
-    {"pressure", "minus the mean of the stress's diagonal, Pa"},
-    {"elastic_strain", "Hencky strain of the elastic part; 6 components as of stress"},
-    {"density", "kg/m^3, as the elastic strain and the volume that volume_correction remembers leave it"},
-    {"speed", "m/s"},
-    {"channels", "every number per particle that an effect keeps, by its own name"},
-    {"age", "s since a particle began, with the scene or from an emitter; asks for the scene's key \"age\""},
-    {"shear_rate",
-     "1/s, sqrt(2 D':D') of the deviatoric rate of strain; in simple shear the slope of velocity"},
-    {"inertial_number", "shear_rate d / sqrt(p / rho_s); asks for the key \"grain_diameter\" of the materials"},
-    {"plastic_strain", "equivalent plastic strain so far; asks for the scene's key \"plastic_strain\""},
-    {"velocity_gradient",
-     "1/s, the affine matrix C that particles keep; 9 components by rows, xx xy xz yx ..."}};
 constexpr double kFinestVoxel = 1.0 / 16.0;  // of files, spacings
 
 void describe_grains(Fields& fields, const Scene& scene, MaterialDescription& material) {
@@ -119,7 +105,8 @@ void describe_output(Fields& fields, Scene& scene) {
   fields.flag("vdb", output.vdb, "points as NAME.points.####.vdb");
   fields.flag("ply", output.ply, "points as PLY");
   fields.flag("vtp", output.vtp, "points as VTK polygonal data");
-  fields.choices("attributes", output.attributes, kAttributes, "what points carry beside P, v, id and pscale");
+  fields.choices("attributes", output.attributes, kOutputAttributes,
+                 "what points carry beside P, v, id and pscale");
   for (const OutputAttribute attribute : output.attributes) {
     const std::string lacks = lacking(scene, attribute);
     fields.check(lacks.empty(), "attributes", lacks);

@@ -298,10 +298,7 @@ Result<void> SimulationOf<Real>::change(const Scene& scene) {
     return Error{ErrorKind::kBadScene, "has another precision: make a new simulation of it", scene.name};
   const double limit = stepper_->plan().memory.limit;
   return unless_memory_ends([&]() -> Result<void> {
-    auto compiled = compile_for(
-        state_, scene,
-        {options_.target, options_.allow_outside_paths, limit, options_.log_contacts, {}, options_.vdb_reader},
-        integrator_.implicit);
+    auto compiled = compile_for(state_, scene, compile_options(options_, limit), integrator_.implicit);
     if (!compiled) return compiled.error();
     for (Solid& solid : compiled->solids) {
       const auto before = find_solid(solid.name);

@@ -2,8 +2,8 @@
 // volumes.
 #include <algorithm>
 
-#include "engine/io/surface.h"
 #include "engine/simulation/simulation_of.h"
+#include "engine/simulation/volumes.h"
 
 namespace repose {
 namespace {
@@ -61,21 +61,17 @@ double SimulationOf<Real>::room_left() const {
 
 template <class Real>
 Result<DenseVolume> SimulationOf<Real>::surface(double voxel, double radius, int smoothing) const {
-  const SurfaceDescription& output = scene_.output.surface;
-  const double spacing = scene_.grid.spacing;
-  const double of_scene = output.voxel > 0.0 ? output.voxel : 0.5 * spacing;
-  const SurfaceOptions options{.voxel = voxel > 0.0 ? voxel : of_scene,
-                               .radius = radius > 0.0 ? radius : output.radius * spacing,
-                               .smoothing = smoothing >= 0 ? smoothing : static_cast<int>(output.smoothing),
-                               .flat_axis = scene_.grid.plane_strain};
+  SurfaceOptions options = surface_options(scene_);
+  if (voxel > 0.0) options.voxel = voxel;
+  if (radius > 0.0) options.radius = radius;
+  if (smoothing >= 0) options.smoothing = smoothing;
   return dense_surface(points({}), options, room_left());
 }
 
 template <class Real>
 Result<DenseVolume> SimulationOf<Real>::fog(double voxel) const {
-  const FogDescription& output = scene_.output.fog;
-  const double of_scene = output.voxel > 0.0 ? output.voxel : scene_.grid.spacing;
-  const FogOptions options{.voxel = voxel > 0.0 ? voxel : of_scene, .flat_axis = scene_.grid.plane_strain};
+  FogOptions options = fog_options(scene_);
+  if (voxel > 0.0) options.voxel = voxel;
   return dense_fog(points({{}, true}), options, room_left());
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/compiler/figures.h"
 #include "engine/simulation/points.h"
+#include "engine/simulation/volumes.h"
 
 namespace repose {
 namespace {
@@ -50,13 +51,12 @@ MemoryBound writing_memory(const Scene& scene) {
   if (output.vdb) writing.per_point_in_file = kGridOfPoints * (36.0 + 4.0 * attributes);
   // Distances, their masks and the copies that smoothing and meshing make.
   constexpr double kCopiesOfSurface = 4.5, kCopiesOfFog = 4.0;
-  const double surface_voxel = output.surface.voxel > 0.0 ? output.surface.voxel : 0.5 * spacing;
-  const double surface = output.surface.given
-                             ? kCopiesOfSurface * 4.0 * kLeafVoxels * leaves_per_block(spacing, surface_voxel)
-                             : 0.0;
-  const double fog_voxel = output.fog.voxel > 0.0 ? output.fog.voxel : spacing;
+  const double surface = output.surface.given ? kCopiesOfSurface * 4.0 * kLeafVoxels *
+                                                    leaves_per_block(spacing, surface_options(scene).voxel)
+                                              : 0.0;
   const double fog =
-      output.fog.given ? kCopiesOfFog * 16.0 * kLeafVoxels * leaves_per_block(spacing, fog_voxel) : 0.0;
+      output.fog.given ? kCopiesOfFog * 16.0 * kLeafVoxels * leaves_per_block(spacing, fog_options(scene).voxel)
+                       : 0.0;
   writing.volumes_per_block = std::max(surface, fog);
   return writing;
 }

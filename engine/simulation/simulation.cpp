@@ -304,9 +304,7 @@ namespace {
 template <class Real>
 Result<std::unique_ptr<Simulation>> create_of(const Scene& scene, const SimulationOptions& options) {
   const double limit = options.memory_limit > 0.0 ? options.memory_limit : default_memory_limit();
-  auto compiled = compile_scene<Real>(
-      scene,
-      {options.target, options.allow_outside_paths, limit, options.log_contacts, {}, options.vdb_reader});
+  auto compiled = compile_scene<Real>(scene, compile_options(options, limit));
   if (!compiled) return compiled.error();
   compiled->plan.memory = writing_memory(scene);
   compiled->plan.memory.limit = limit;

@@ -21,6 +21,17 @@
 
 namespace repose {
 
+/// What of a simulation's options its scene is compiled with; `limit`: bytes that it may take.
+inline CompileOptions compile_options(const SimulationOptions& options, double limit) {
+  CompileOptions compile;
+  compile.target = options.target;
+  compile.allow_outside_paths = options.allow_outside_paths;
+  compile.memory_limit = limit;
+  compile.log_contacts = options.log_contacts;
+  compile.vdb_reader = options.vdb_reader;
+  return compile;
+}
+
 template <class Real>
 class SimulationOf final : public Simulation {
  public:
