@@ -9,10 +9,6 @@
 #include "apps/repose/element_report.h"
 #include "apps/repose/output_folder.h"
 #include "engine/base/wording.h"
-#include "engine/effect/cohesion.h"
-#include "engine/effect/hardening.h"
-#include "engine/effect/moisture.h"
-#include "engine/effect/rate_friction.h"
 
 namespace repose {
 namespace {
@@ -83,29 +79,6 @@ Result<Chosen> chosen_path(const ElementArguments& arguments, const Elasticity& 
   return chosen;
 }
 
-/// The cone of the material where nothing changes it on the way: q/p, and q without pressure.
-void tell_cone(const Scene& scene, ElementReport& report) {
-  const MaterialDescription& material = scene.materials[0];
-  const FrictionalCone* cone = cone_of(material.parameters);
-  if (cone == nullptr) return;
-  const SetDescription set{"element", material.name, material.parameters, {}};
-  bool changes = false;
-  for_each_effect(scene.effects, [&](const auto& effect) {
-    using E = std::decay_t<decltype(effect)>;
-    if constexpr (std::is_same_v<E, Hardening> || std::is_same_v<E, RateFriction> ||
-                  std::is_same_v<E, Moisture>)
-      changes = changes || effect.find(set) != nullptr;
-    if constexpr (std::is_same_v<E, Cohesion>) {
-      const CohesionParameters* of = effect.find(set);
-      if (of == nullptr) return;
-      const double norm =
-          2.0 * material.elasticity().mu() * cone->cohesion_strain(material.elasticity(), of->strength);
-      report.apex = std::sqrt(1.5) * norm;
-    }
-  });
-  if (!changes) report.cone = 3.0 * std::sqrt(1.5) * cone->cone_slope();
-}
-
 }  // namespace
 
 int element_command(const ElementArguments& arguments) {
@@ -113,7 +86,7 @@ int element_command(const ElementArguments& arguments) {
   if (!scene) return fail(scene.error());
   auto options = simulation_options(arguments.scene);
   if (!options) return fail(options.error());
-  LeftOut left_out;
+  std::vector<std::string> left_out;
   auto only = element_scene(*scene, arguments.material, left_out);
   if (!only) return fail(only.error());
   auto chosen = chosen_path(arguments, only->materials[0].elasticity());
@@ -128,9 +101,8 @@ int element_command(const ElementArguments& arguments) {
   const MaterialDescription& material = element->material();
   const char* const law =
       std::visit([](const auto& parameters) { return parameters.kName; }, material.parameters);
-  ElementReport report{scene->name,         material.name,   law, chosen->text, chosen->plots, *states,
-                       element->channels(), left_out.effects};
-  tell_cone(*only, report);
+  const ElementReport report{scene->name, material.name,       law,      chosen->text,          chosen->plots,
+                             *states,     element->channels(), left_out, cone_of_element(*only)};
   if (auto written = write_report(report, folder->path()); !written) return fail(written.error());
   if (arguments.quiet) return 0;
   double most = 0.0, strength = 0.0;
@@ -138,9 +110,8 @@ int element_command(const ElementArguments& arguments) {
     most = std::max(most, state.q());
     if (state.p() > 0.0) strength = std::max(strength, state.q() / state.p());
   }
-  std::string names;
-  for (const std::string& name : left_out.effects) names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty()) std::printf("no part of an element, and left out: %s\n", names.c_str());
+  if (!left_out.empty())
+    std::printf("no part of an element, and left out: %s\n", plain_list_text(left_out).c_str());
   std::printf("%s, %s: %zu steps, largest q %.6g Pa, largest q/p %.6g\n%s/index.html\n", material.name.c_str(),
               chosen->text.c_str(), states->size() - 1, most, strength, folder->path().c_str());
   return 0;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "apps/repose/study/page.h"
+#include "engine/base/wording.h"
 #include "engine/io/atomic_file.h"
 
 namespace repose {
@@ -129,9 +130,9 @@ class Charts {
   }
 
   Plot with_cone(Plot plot) const {
-    if (report_.cone > 0.0 && report_.apex == 0.0) {
+    if (report_.cone.ratio > 0.0 && report_.cone.apex == 0.0) {
       plot.title += ", its cone dashed";
-      plot.level = report_.cone;
+      plot.level = report_.cone.ratio;
       plot.has_level = true;
     }
     return plot;
@@ -141,12 +142,12 @@ class Charts {
     Plot path = plot(
         "path", "Stress path", "p [Pa]", "q [Pa]", [](const ElementState& s) { return s.p(); },
         [](const ElementState& s) { return s.q(); });
-    if (!(report_.cone > 0.0)) return path;
+    if (!(report_.cone.ratio > 0.0)) return path;
     double most = 0.0;
     for (const auto& [p, q] : path.lines[0].points) most = std::max(most, p);
     Line cone;
     cone.reference = true;
-    cone.points = {{0.0, report_.apex}, {most, report_.apex + report_.cone * most}};
+    cone.points = {{0.0, report_.cone.apex}, {most, report_.cone.apex + report_.cone.ratio * most}};
     path.lines.push_back(std::move(cone));
     path.title += ", its cone dashed";
     return path;
@@ -190,10 +191,9 @@ std::string ElementReport::page() const {
       "p", "One element of " + material + " (" + law + ") of the scene " + scene +
                ", by the return map and the stress of the engine. Tension and stretch are positive, p in "
                "compression.");
-  std::string names;
-  for (const std::string& name : left_out) names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty())
-    html += element("p", "No part of an element, and left out: " + names + ".", "class=\"faint\"");
+  if (!left_out.empty())
+    html += element("p", "No part of an element, and left out: " + plain_list_text(left_out) + ".",
+                    "class=\"faint\"");
   html += "</header>\n<div class=\"plots\">\n";
   for (const Plot& plot : charts()) html += "<figure>" + svg(plot) + "</figure>\n";
   html +=

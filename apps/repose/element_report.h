@@ -18,9 +18,7 @@ struct ElementReport {
   const std::vector<ElementState>& states;
   std::vector<std::string> channels;
   std::vector<std::string> left_out;  ///< effects of the scene that are no part of an element
-  /// q/p at which the material's cone yields, where that is one for all time; 0: none.
-  double cone = 0.0;
-  double apex = 0.0;  ///< q that it bears without pressure, Pa
+  ElementCone cone;
 
   std::string csv() const;
   std::vector<Plot> charts() const;

@@ -62,6 +62,17 @@ std::string list_text(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string plain_list_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string trimmed(const std::string& text, const char* blank) {
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
 std::string nearest(const std::string& name, const std::vector<std::string>& candidates) {
   const std::string start = name.substr(0, kMostCompared);
   const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {

@@ -21,6 +21,12 @@ std::string expected_text(const std::string& noun, const Quantity& quantity);
 /// "a, b, c", each in quotation marks.
 std::string list_text(const std::vector<std::string>& names);
 
+/// "a, b, c", as they are.
+std::string plain_list_text(const std::vector<std::string>& names);
+
+/// Without what is in `blank` at either end.
+std::string trimmed(const std::string& text, const char* blank = " \t\r\n");
+
 /// The candidate with the least edit distance to `name`; empty where there is none.
 std::string nearest(const std::string& name, const std::vector<std::string>& candidates);
 

@@ -26,27 +26,32 @@ struct ElementState {
   double volumetric = 0.0;  ///< ln det F since the path began
   double deviatoric = 0.0;  ///< sum of sqrt(2/3) |dev D dt| along the path
   Symmetric6 elastic{};     ///< Hencky strain of the elastic part, of the material at rest
-  Symmetric6 stress{};  ///< Cauchy's, tau / J, Pa; J the whole change of volume since the material was at rest
-  double work = 0.0;  ///< sum of tau : D dt, by the mean of both ends of a step, J/m^3 of the material at rest
+  /// Cauchy's, tau / J, Pa; J the whole change of volume since the material was at rest.
+  Symmetric6 stress{};
+  /// Sum of tau : D dt, by the mean of both ends of a step, J/m^3 of the material at rest.
+  double work = 0.0;
   double plastic_work = 0.0;     ///< sum of tau : (trial - returned), likewise; no step makes it less
   double elastic_energy = 0.0;   ///< psi, likewise
   std::vector<double> channels;  ///< what law and effects keep, in the order of Element::channels
 
-  double p() const;  ///< -tr(stress) / 3, Pa
-  double q()
-      const;  ///< sqrt(3/2) |dev stress|, Pa: in triaxial tests the difference of axial and lateral stress
-};
-
-/// What of a scene an element has none of.
-struct LeftOut {
-  std::vector<std::string>
-      effects;  ///< names of those that are on and no part of a material: gravity, colliders ...
+  /// -tr(stress) / 3, Pa.
+  double p() const;
+  /// sqrt(3/2) |dev stress|, Pa: in triaxial tests the difference of axial and lateral stress.
+  double q() const;
 };
 
 /// The scene of an element: a point of one material, and of the effects those that are a matter of the
-/// material. `left_out` gets the others. Errors: 64 no such material (`name` empty: there are several); 65, by
-/// the key: the material has something that an element cannot have, such as `variation`, which goes by place.
-Result<Scene> element_scene(const Scene& scene, const std::string& name, LeftOut& left_out);
+/// material. `left_out` gets the names of the others that are on: gravity, colliders ... Errors: 64 no such
+/// material (`name` empty: there are several); 65, by the key: the material has something that an element
+/// cannot have, such as `variation`, which goes by place.
+Result<Scene> element_scene(const Scene& scene, const std::string& name, std::vector<std::string>& left_out);
+
+/// The cone on which an element of a scene as element_scene makes it yields.
+struct ElementCone {
+  double ratio = 0.0;  ///< q/p; 0: there is none, or it changes on the way
+  double apex = 0.0;   ///< q that it bears without pressure, Pa
+};
+ElementCone cone_of_element(const Scene& scene);
 
 class Element {
  public:

@@ -1,5 +1,6 @@
 // Repose: which effects of a scene are a matter of a material, and act on an element; which are not, and are
 // left out; and which change sand by its place or its neighbours, and are refused: what is not known here, too.
+#include <cmath>
 #include <type_traits>
 
 #include "engine/base/wording.h"
@@ -64,6 +65,10 @@ std::string refusal(const E& effect, const SetDescription& set) {
   }
 }
 
+/// What changes the cone on the way.
+template <class E>
+constexpr bool kChangesCone = kIsOneOf<E, Hardening, RateFriction, Moisture>;
+
 Result<std::size_t> find_material(const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
   for (const MaterialDescription& material : scene.materials) names.push_back(material.name);
@@ -79,7 +84,7 @@ Result<std::size_t> find_material(const Scene& scene, const std::string& name) {
 
 }  // namespace
 
-Result<Scene> element_scene(const Scene& scene, const std::string& name, LeftOut& left_out) {
+Result<Scene> element_scene(const Scene& scene, const std::string& name, std::vector<std::string>& left_out) {
   const auto chosen = find_material(scene, name);
   if (!chosen) return chosen.error();
   const MaterialDescription& material = scene.materials[*chosen];
@@ -106,13 +111,34 @@ Result<Scene> element_scene(const Scene& scene, const std::string& name, LeftOut
           const std::string refused = refusal(each, set);
           if (possible && !refused.empty()) possible = Error{ErrorKind::kBadScene, refused, scene.name};
           if constexpr (kActs<E>) element.effect<E>() = each;
-          if constexpr (kNoPart<E>) left_out.effects.emplace_back(E::kName);
+          if constexpr (kNoPart<E>) left_out.emplace_back(E::kName);
         };
         (take(effect), ...);
       },
       scene.effects);
   if (!possible) return possible.error();
   return element;
+}
+
+ElementCone cone_of_element(const Scene& scene) {
+  const MaterialDescription& material = scene.materials[0];
+  const FrictionalCone* const cone = cone_of(material.parameters);
+  if (cone == nullptr) return {};
+  const SetDescription set{"element", material.name, material.parameters};
+  ElementCone found{3.0 * std::sqrt(1.5) * cone->cone_slope(), 0.0};
+  for_each_effect(scene.effects, [&](const auto& effect) {
+    using E = std::decay_t<decltype(effect)>;
+    if constexpr (kChangesCone<E>) {
+      if (effect.find(set) != nullptr) found.ratio = 0.0;
+    }
+    if constexpr (std::is_same_v<E, Cohesion>) {
+      const CohesionParameters* const of = effect.find(set);
+      if (of == nullptr) return;
+      const Elasticity elasticity = material.elasticity();
+      found.apex = std::sqrt(6.0) * elasticity.mu() * cone->cohesion_strain(elasticity, of->strength);
+    }
+  });
+  return found;
 }
 
 }  // namespace repose

@@ -33,17 +33,16 @@ std::map<std::string, Column> known_columns() {
   return known;
 }
 
-std::string trimmed(const std::string& text) {
-  const char* const blank = " \t\r\"";
-  const std::size_t first = text.find_first_not_of(blank);
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blank) - first + 1);
+/// Beside blanks, the quotation marks of spreadsheets.
+std::string bare(const std::string& cell) {
+  return trimmed(cell, " \t\r\"");
 }
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
+    cells.push_back(bare(line.substr(begin, end - begin)));
     begin = end + 1;
   }
   return cells;
@@ -68,7 +67,7 @@ class PathReader {
     if (!in) return Error{ErrorKind::kNoInput, "cannot be read", file_};
     for (std::string line; std::getline(in, line);) {
       ++line_;
-      if (trimmed(line).empty() || line[0] == '#') continue;
+      if (bare(line).empty() || line[0] == '#') continue;
       const std::vector<std::string> cells = cells_of(line);
       if (auto taken = columns_.empty() ? take_head(cells) : take_row(cells); !taken) return taken.error();
     }
@@ -95,16 +94,16 @@ class PathReader {
     for (const auto& [name, column] : known) all.push_back(name);
     for (const std::string& cell : cells) {
       const std::size_t bracket = cell.find('[');
-      const std::string name = trimmed(cell.substr(0, bracket));
+      const std::string name = bare(cell.substr(0, bracket));
       const auto found = known.find(name);
       if (found == known.end()) return refuse("column \"" + name + "\" is unknown; " + did_you_mean(name, all));
       std::string unit = bracket == std::string::npos ? found->second.unit : cell.substr(bracket + 1);
       if (!unit.empty() && unit.back() == ']') unit.pop_back();
-      if (*found->second.unit == 0 && trimmed(unit) == "-") unit.clear();
-      if (trimmed(unit) != found->second.unit)
+      if (*found->second.unit == 0 && bare(unit) == "-") unit.clear();
+      if (bare(unit) != found->second.unit)
         return refuse("column \"" + name + "\" is in " +
                       (*found->second.unit == 0 ? std::string("no unit") : found->second.unit) + ", not in \"" +
-                      trimmed(unit) + "\"");
+                      bare(unit) + "\"");
       for (const std::string& before : names_) {
         if (before == name) return refuse("column \"" + name + "\" is there twice");
       }

@@ -29,7 +29,7 @@ inline Scene sand_scene(const std::string& material = "", const std::string& mor
 }
 
 inline Element element_of(const Scene& scene) {
-  LeftOut left_out;
+  std::vector<std::string> left_out;
   auto only = element_scene(scene, "", left_out);
   if (!only) throw std::runtime_error(only.error().text());
   auto element = Element::create(*only);

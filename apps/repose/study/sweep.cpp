@@ -1,12 +1,9 @@
 #include "apps/repose/study/sweep.h"
 
+#include "engine/base/wording.h"
+
 namespace repose {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const std::size_t from = text.find_first_not_of(" \t\n"), to = text.find_last_not_of(" \t\n");
-  return from == std::string::npos ? "" : text.substr(from, to - from + 1);
-}
 
 /// Parts of a text between marks that stand in no bracket and no quotation.
 std::vector<std::string> split(const std::string& text, char mark) {
