@@ -151,11 +151,8 @@ void define_engine(py::module_& module) {
   engine
       .def(py::init(&make_engine), py::arg("scene"), py::arg("threads") = 0, py::arg("target") = "best",
            py::arg("memory_limit") = 0.0, py::arg("log_contacts") = false, py::arg("log") = py::none(),
-           "Makes it: builds solids, fills bodies. threads 0: all, -1: the arena of oneTBB that the caller is "
-           "in; "
-           "memory_limit in bytes, 0: 85 % of the "
-           "machine's; "
-           "log(level, message) is told of warnings.")
+           "Makes it: builds solids, fills bodies. threads 0: all, -1: the arena of oneTBB that the caller "
+           "is in; memory_limit in bytes, 0: 85 % of the machine's; log(level, message) is told of warnings.")
       .def("advance_frame", &Engine::advance_frame, Release(), "To the end of the frame at hand.")
       .def("advance_seconds", &Engine::advance_seconds, Release(), py::arg("seconds"),
            "So many s of the scene's time further; frames end on the way.")
@@ -213,13 +210,11 @@ void define_engine(py::module_& module) {
       .def("drive_collider", &drive_collider, py::arg("collider"), py::arg("velocity") = py::none(),
            py::arg("spin") = py::none(), py::arg("center") = py::none(),
            "Its surface moves with velocity + spin x (x - center), in m/s, rad/s and m, whatever its poses "
-           "come to; "
-           "without velocity and spin by its poses again.")
+           "come to; without velocity and spin by its poses again.")
       .def("add_particles", &add_particles, py::arg("emitter"), py::arg("positions"),
            py::arg("velocities") = py::none(), py::arg("channels") = std::map<std::string, Array<float>>(),
-           "Particles begin at (n, 3), m, with numbers of the scene's channels by name, (n,) or (n, "
-           "components); "
-           "returns the id of the first.")
+           "Particles begin at (n, 3), m, with numbers of the scene's channels by name, (n,) or "
+           "(n, components); returns the id of the first.")
       .def("set_values", &set_values, py::arg("channel"), py::arg("ids"), py::arg("values"),
            "Other numbers of a channel for particles of ids; returns how many of them there were.")
       .def(

@@ -162,14 +162,12 @@ void define_reading(py::class_<Engine>& engine) {
           "points", &points, py::arg("attributes") = std::vector<std::string>(), py::arg("up") = "scene",
           py::arg("mass") = false, py::arg("half") = false,
           "Copies of P (m), v (m/s), id, pscale (m) and the attributes, in the order of ids: a dict of arrays. "
-          "Attributes are those of the scene's output, and names of its channels; with half, all but P and id "
-          "are "
-          "float16.")
+          "Attributes are those of the scene's output, and names of its channels; with half, all but P and "
+          "id are float16.")
       .def("surface", &surface, py::arg("voxel") = 0.0, py::arg("radius") = 0.0, py::arg("smoothing") = -1,
-           "The surface as signed distances, m: a dict of \"surface\" (x, y, z), \"lower\", where its first "
-           "value "
-           "lies, and \"voxel\", from one to the next, m. voxel and radius in m; what is left out is the "
-           "scene's.")
+           "The surface as signed distances, m: a dict of \"surface\" (x, y, z), \"lower\", where its "
+           "first value lies, and \"voxel\", from one to the next, m. voxel and radius in m; what is left "
+           "out is the scene's.")
       .def("fog", &fog, py::arg("voxel") = 0.0,
            "\"density\" (x, y, z), kg/m^3, and \"v\" (x, y, z, 3), m/s, on voxels, with \"lower\" and "
            "\"voxel\", m.")

@@ -53,9 +53,8 @@ typename ContactTables<Real>::NearSolids ContactTables<Real>::tabulate(const Sta
       const Vec3 x = place.node(node);
       const WayInPlane way(solids_[k].normal(x, 0.25 * state.spacing), place.flat_axis());
       NodeContact<Real>& contact = entry.nodes[node];
-      const double distance = solids_[k].distance(x);
-      const double nowhere = solids_[k].contact == Contact::kSticky ? distance : search_distance(state.spacing);
-      contact.distance = static_cast<Real>(way.distance(distance, nowhere) - kNodeReach * state.spacing);
+      const double distance = way.distance(solids_[k].distance(x), solids_[k].contact);
+      contact.distance = static_cast<Real>(distance - kNodeReach * state.spacing);
       for (int axis = 0; axis < 3; ++axis) contact.normal[axis] = static_cast<Real>(way.normal[axis]);
     }
     near.push_back(entry);

@@ -92,32 +92,32 @@ template <bool kDeforms, class Real>
   const bool separating = solid_.contact == Contact::kSeparating;
   const double path = separating ? dt * std::sqrt(static_cast<double>(dot(v, v))) : 0.0;
   const NodeContact<Real> out_of_reach{std::numeric_limits<Real>::max(), {Real(0), Real(0), Real(0)}};
-  double distance;  // when the step ends, to the surface; then along the plane
+  const double reach = kNodeReach * spacing;
+  double to_surface;  // when the step ends
   Vec3 normal, speed;
   if constexpr (kDeforms) {
     const double side = solid_.hollow ? -1.0 : 1.0;
     const MorphedShape::Beside at = shape_->beside(x);
-    distance = side * at.distance - kNodeReach * spacing;
+    to_surface = side * at.distance;
     std::fill_n(wall, 3, Real(0));
-    if (distance > path) return out_of_reach;
+    if (to_surface - reach > path) return out_of_reach;
     const Vec3 outward = shape_->normal(x, 0.25 * spacing, at.way);
     normal = side * outward;
     speed = in_plane(ways_per_second_ * MorphedShape::way(at, outward), flat_axis);
     for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(speed[axis]);
   } else {
     const Vec3 own = end_.own(x);
-    distance = solid_.distance(own) - kNodeReach * spacing;
+    to_surface = solid_.distance(own);
     speed = still_ ? Vec3(0, 0, 0) : in_plane((end_.point(begin_.own(x)) - x) / dt, flat_axis);
     const Vec3 surface = drive_ ? in_plane(drive_->at(x), flat_axis) : speed;
     for (int axis = 0; axis < 3; ++axis) wall[axis] = static_cast<Real>(surface[axis]);
     // A surface that is said to move comes to nodes though the solid does not.
     const double comes = drive_ && separating ? dt * surface.norm() : 0.0;
-    if (distance > path + comes) return out_of_reach;
+    if (to_surface - reach > path + comes) return out_of_reach;
     normal = end_.direction(solid_.normal(own, 0.25 * spacing));
   }
   const WayInPlane way(normal, flat_axis);
-  if (way.stretch == 0.0 && solid_.contact != Contact::kSticky) return out_of_reach;
-  if (way.stretch > 1.0) distance = way.stretch * (distance + kNodeReach * spacing) - kNodeReach * spacing;
+  const double distance = way.distance(to_surface, solid_.contact) - reach;
   // A separating node moves on from where the solid stands when the step begins.
   NodeContact<Real> contact{static_cast<Real>(separating ? distance + dt * way.normal.dot(speed) : distance),
                             {}};

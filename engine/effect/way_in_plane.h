@@ -1,7 +1,10 @@
 // Repose: solids as material of plane strain meets them.
 #pragma once
 
+#include <limits>
+
 #include "engine/base/vector.h"
+#include "engine/plan/constraint.h"
 
 namespace repose {
 
@@ -19,9 +22,11 @@ struct WayInPlane {
     stretch = cosine > 0.1 ? 1.0 / cosine : 0.0;
     normal *= stretch;
   }
-  /// Of a distance along the surface's normal; `nowhere` where no way leads there.
-  double distance(double to_surface, double nowhere) const {
-    return stretch > 0.0 ? stretch * to_surface : nowhere;
+  /// How far along it a surface is that is so far (m) along its own normal; without end where no way leads
+  /// there, but for what sticks, which holds all that is within.
+  double distance(double to_surface, Contact contact) const {
+    if (stretch > 0.0) return stretch * to_surface;
+    return contact == Contact::kSticky ? to_surface : std::numeric_limits<double>::infinity();
   }
 };
 

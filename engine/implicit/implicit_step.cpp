@@ -118,10 +118,12 @@ void ImplicitStep<Real>::take(const Vector& v, double length, const Vector& step
 
 template <class Real>
 bool ImplicitStep<Real>::change_contacts(Vector& v, double least) {
-  const auto [wrong] = sweep_.sums_of_blocks([&](std::size_t b) {
-    return std::array{contacts_.unsettled(b, sweep_.state().nodes.block(b), v.block(b))};
-  });
-  if (wrong <= least * least) return false;
+  if (least > 0.0) {
+    const auto [wrong] = sweep_.sums_of_blocks([&](std::size_t b) {
+      return std::array{contacts_.unsettled(b, sweep_.state().nodes.block(b), v.block(b))};
+    });
+    if (wrong <= least * least) return false;
+  }
   const auto [changes] = sweep_.sums_of_blocks([&](std::size_t b) {
     if (!contacts_.any(b)) return std::array{0.0};
     // In this order: a contact that was let go has its node on the wall still.

@@ -8,10 +8,6 @@
 namespace repose {
 namespace {
 
-[[noreturn]] void wrong(const char* what) {
-  throw BadRecord{BadRecord::Why::kWrong, what};
-}
-
 /// Numbers of a grid, as they are told.
 struct Figures {
   std::uint64_t points, active;
@@ -58,7 +54,7 @@ PointCloud take_points(RecordReader& record) {
     attribute.name = record.text();
     const auto components = record.value<std::uint64_t>();
     if (components == 0 || components > 9 || !has_layout(static_cast<int>(components)))
-      wrong("an attribute of another size");
+      wrong_record("an attribute of another size");
     attribute.components = static_cast<int>(components);
     attribute.values = record.array<float>(components * count);
   }

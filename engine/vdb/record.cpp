@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t kBuffer = 1 << 16;
 
-[[noreturn]] void wrong(const char* what) {
-  throw BadRecord{BadRecord::Why::kWrong, what};
-}
-
 }  // namespace
 
 void RecordWriter::flush() {
@@ -106,7 +102,7 @@ void RecordReader::bytes(void* to, std::size_t count) {
 
 std::string RecordReader::text() {
   const auto length = value<std::uint32_t>();
-  if (length > kLongestText) wrong("a text that is too long");
+  if (length > kLongestText) wrong_record("a text that is too long");
   std::string text(length, '\0');
   bytes(text.data(), length);
   for (char& c : text) {
@@ -116,20 +112,20 @@ std::string RecordReader::text() {
 }
 
 RecordKind RecordReader::begin() {
-  if (value<std::uint64_t>() != kRecordBegins) wrong("not the beginning of an answer");
+  if (value<std::uint64_t>() != kRecordBegins) wrong_record("not the beginning of an answer");
   const auto kind = value<std::uint32_t>();
   if (kind != static_cast<std::uint32_t>(RecordKind::kAnswer) &&
       kind != static_cast<std::uint32_t>(RecordKind::kRefusal))
-    wrong("an answer of no kind");
+    wrong_record("an answer of no kind");
   return static_cast<RecordKind>(kind);
 }
 
 void RecordReader::end() {
   const std::uint64_t count = count_, hash = fnv_.hash();
   if (value<std::uint64_t>() != count || value<std::uint64_t>() != hash)
-    wrong("an answer whose checksum does not fit its bytes");
+    wrong_record("an answer whose checksum does not fit its bytes");
   char more = 0;
-  if (at_ < buffer_.size() || some(&more, 1) != 0) wrong("more than an answer");
+  if (at_ < buffer_.size() || some(&more, 1) != 0) wrong_record("more than an answer");
 }
 
 }  // namespace repose

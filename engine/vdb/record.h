@@ -56,6 +56,10 @@ struct BadRecord {
   std::string what;  ///< of kWrong
 };
 
+[[noreturn]] inline void wrong_record(const char* what) {
+  throw BadRecord{BadRecord::Why::kWrong, what};
+}
+
 /// The engine's side; throws BadRecord.
 class RecordReader {
  public:

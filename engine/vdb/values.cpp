@@ -13,10 +13,6 @@ namespace {
 constexpr std::size_t kVoxels = 512;  // of a block
 static_assert(sizeof(VdbTile) == 28 && sizeof(VdbMap) == 248 && sizeof(VdbValuesHead) == 288);
 
-[[noreturn]] void wrong(const char* what) {
-  throw BadRecord{BadRecord::Why::kWrong, what};
-}
-
 bool all_finite(const double* values, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) {
     if (!std::isfinite(values[k])) return false;
@@ -86,9 +82,9 @@ void VdbValues<kComponents>::take(RecordReader& record) {
   const auto head = record.value<VdbValuesHead>();
   if (head.components != kComponents || head.staggered > 1 || !head.map.sound() ||
       head.map.kind > VdbMap::Kind::kFrustum)
-    wrong("no grid of such values");
+    wrong_record("no grid of such values");
   constexpr std::uint64_t kMost = CubeTable::kNone / 2;
-  if (head.blocks > kMost || head.tiles > kMost) wrong("too many blocks");
+  if (head.blocks > kMost || head.tiles > kMost) wrong_record("too many blocks");
   map_ = head.map;
   staggered_ = head.staggered == 1;
   for (std::size_t k = 0; k < kComponents; ++k) background_[k] = head.background[k];
@@ -101,7 +97,7 @@ void VdbValues<kComponents>::take(RecordReader& record) {
     for (std::size_t b = 0; b < corners.size(); ++b) {
       const auto& at = corners[b].at;
       if (((at[0] | at[1] | at[2]) & 7) != 0 || !blocks_.add(at, static_cast<std::uint32_t>(b)))
-        wrong("blocks that are none");
+        wrong_record("blocks that are none");
     }
   }
   values_ = record.array<Value>(head.blocks * kVoxels);
@@ -117,17 +113,17 @@ void VdbValues<kComponents>::take(RecordReader& record) {
       const auto& at = tile.corner;
       if (((at[0] | at[1] | at[2]) & ((1 << side) - 1)) != 0 ||
           !tiles_of_[level].add(at, static_cast<std::uint32_t>(tiles_.size())))
-        wrong("tiles that are none");
+        wrong_record("tiles that are none");
       Value& value = tiles_.emplace_back();
       for (std::size_t k = 0; k < kComponents; ++k) value[k] = tile.value[k];
     }
   }
-  if (tiles_.size() != tiles.size()) wrong("tiles of no size");
+  if (tiles_.size() != tiles.size()) wrong_record("tiles of no size");
   bool finite = true;
   for_each([&finite](const Value& value) {
     for (const float component : value) finite = finite && std::isfinite(component);
   });
-  if (!finite) wrong("values that are not finite");
+  if (!finite) wrong_record("values that are not finite");
 }
 
 template <int kComponents>
