@@ -77,12 +77,13 @@ class ContactSet {
   void stop_turning(std::size_t block, const Real* from, Real* to) const;
 
   /// Of the velocities `v` that were found, `nodes` with their masses: takes the impulses that the solve has
-  /// given to contacts, and lets contacts act as in an explicit step (engine/plan/contact_law.h), which stops
-  /// what sticks to the last bit; several at a node in the order, and beginning with those, that were solved
-  /// with, or they would come to another velocity. Calls record(node, mass), a recorder, for each. `rubbed`:
-  /// the same after friction, where that follows the solve; may be `v`.
+  /// given to contacts, and gives what those that it found to act give as in an explicit step
+  /// (engine/plan/collide.h), which stops what sticks to the last bit. Only where that lets a node pass another
+  /// do contacts come and go here, beginning with these: without the friction that holds it, a node may seem
+  /// to pass what it does not. Calls record(node, mass), a recorder, for each. `rubbed`: the same after
+  /// friction, where that follows the solve; may be `v`.
   template <class Record>
-  void act(std::size_t block, Real dt, const Real* nodes, Real* v, Real* rubbed, Record record) const;
+  void act(std::size_t block, const Real* nodes, Real* v, Real* rubbed, Record record) const;
 
   bool any(std::size_t block) const { return !nodes_[block].empty(); }
   /// Directions that are held, over all nodes.
@@ -111,23 +112,6 @@ class ContactSet {
   /// How much v, that of the node, passes a wall; nothing where that is rounding.
   static Real passed(const Constraint<Real>& hold, const Vector3& v);
   static bool lets_go(const Node& node, const Hold<Real>& hold);
-  static std::ptrdiff_t active(const Node& node) {
-    return std::count_if(node.holds.begin(), node.holds.end(),
-                         [](const Hold<Real>& hold) { return hold.active; });
-  }
-
-  /// The solids at a node, as collide() asks for them.
-  struct AroundNode {
-    const std::vector<Constraint<Real>>& laws;
-
-    std::size_t size() const { return laws.size(); }
-    int solid(std::size_t k) const { return laws[k].solid; }
-    Contact contact(std::size_t k) const { return laws[k].contact; }
-    Real friction(std::size_t k) const { return laws[k].friction; }
-    NodeContact<Real> at(std::size_t k) const { return beside(laws[k]); }
-    const Real* wall(std::size_t k) const { return laws[k].velocity; }
-    void meet(std::size_t, const Real*) const {}
-  };
 
   bool rubs_;
   std::vector<std::vector<Node>> nodes_;  // per block
@@ -136,24 +120,25 @@ class ContactSet {
 
 template <class Real>
 template <class Record>
-void ContactSet<Real>::act(std::size_t block, Real dt, const Real* nodes, Real* v, Real* rubbed,
-                           Record record) const {
+void ContactSet<Real>::act(std::size_t block, const Real* nodes, Real* v, Real* rubbed, Record record) const {
   Corner<Real> corner;
   for (const Node& node : nodes_[block]) {
     const std::size_t at = static_cast<std::size_t>(node.index) * kNodeValues;
     const Real mass = nodes[at];
     if (!(mass > Real(0))) continue;
     Real *const bar = v + at + 1, *const tilde = rubbed + at + 1;
-    for (int axis = 0; axis < 3; ++axis) bar[axis] -= node.reaction[axis] / mass;
-    const auto recorder = record(static_cast<std::size_t>(node.index), mass);
-    if (active(node) < 2) {
-      collide(AroundNode{node.laws}, corner, dt, bar, tilde, recorder);
-      continue;
-    }
+    Eigen::Map<Vector3> acts(bar);
+    const Vector3 free = acts -= node.reaction / mass;
     corner.clear();
     for (std::size_t k = 0; k < node.laws.size(); ++k) corner.add(node.laws[k], node.holds[k].active);
-    corner.settle_as_listed(bar);
-    rub_in_corner(corner, bar, tilde, recorder);
+    corner.hold(bar);
+    Vector3 end = acts;
+    if (rubs_) corner.rub(end.data());
+    if (corner.passes(end.data())) {
+      acts = free;
+      corner.settle_as_listed(bar);
+    }
+    rub_in_corner(corner, bar, tilde, record(static_cast<std::size_t>(node.index), mass));
   }
 }
 

@@ -157,9 +157,7 @@ void ImplicitStep<Real>::publish_block(std::size_t b, const Real* v) {
   ContactLog* const log = plan_.tables.template get<Real>(kContactLog);
   ContactSums* const sums = log != nullptr && log->has(b) ? log->begin(b) : nullptr;
   const BlockPlace<Real> place(state, state.grid.blocks()[b]);
-  const auto act = [&](auto record) {
-    contacts_.act(b, sweep_.dt(), nodes, nodes, apart ? rubbed : nodes, record);
-  };
+  const auto act = [&](auto record) { contacts_.act(b, nodes, nodes, apart ? rubbed : nodes, record); };
   if (sums != nullptr) {
     act([&](std::size_t node, Real mass) {
       return ContactRecorder{sums, static_cast<double>(mass), place.node(node)};

@@ -29,6 +29,10 @@ class Corner {
   /// one that is passed most is taken up. Those that ask for most count first; as listed, the first do.
   void settle(Real* v);
   void settle_as_listed(Real* v);
+  /// The same with those that act as listed, and no others.
+  void hold(Real* v);
+  /// Whether v passes a contact that does not act.
+  bool passes(const Real* v) const { return most_passed(Eigen::Map<const Vector3>(v)) != npos; }
   /// v-bar -> v-tilde: takes at most the sum of all mu J from the motion against the roughest.
   void rub(Real* v);
   /// Calls give(solid, velocity, change of velocity) for what each has done.
@@ -40,9 +44,12 @@ class Corner {
   std::span<const Hold<Real>> holds() const { return {holds_.data(), holds_.size()}; }
   static Real passed_by(const Constraint<Real>& hold, const Vector3& v);
   void sort(const Vector3& v);
+  void hold(const Vector3& free, Eigen::Map<Vector3>& at);
   bool let_go();
   bool take_up(const Vector3& v);
+  std::size_t most_passed(const Vector3& v) const;
 
+  static constexpr auto npos = static_cast<std::size_t>(-1);
   boost::container::small_vector<Hold<Real>, 8> holds_;
   HeldDirections<Real> directions_;
   const Constraint<Real>* rough_ = nullptr;
@@ -80,12 +87,23 @@ void Corner<Real>::settle_as_listed(Real* v) {
   const Vector3 free = at;
   // Each contact comes and goes once or twice; beyond that they only take turns.
   for (std::size_t turn = 0; turn <= 4 * holds_.size(); ++turn) {
-    directions_.span(holds());
-    at = free;
-    directions_.apply(at);
-    directions_.share_out(at - free, holds());
+    hold(free, at);
     if (!let_go() && !take_up(at)) return;
   }
+}
+
+template <class Real>
+void Corner<Real>::hold(Real* v) {
+  Eigen::Map<Vector3> at(v);
+  hold(Vector3(at), at);
+}
+
+template <class Real>
+void Corner<Real>::hold(const Vector3& free, Eigen::Map<Vector3>& at) {
+  directions_.span(holds());
+  at = free;
+  directions_.apply(at);
+  directions_.share_out(at - free, holds());
 }
 
 template <class Real>
@@ -100,20 +118,28 @@ bool Corner<Real>::let_go() {
 }
 
 template <class Real>
-bool Corner<Real>::take_up(const Vector3& v) {
+std::size_t Corner<Real>::most_passed(const Vector3& v) const {
   constexpr Real kRounding = Real(1e-6);
   const Real speed = v.norm();
-  Hold<Real>* passed = nullptr;
+  std::size_t passed = npos;
   Real most = Real(0);
-  for (Hold<Real>& hold : holds_) {
+  for (std::size_t k = 0; k < holds_.size(); ++k) {
+    const Hold<Real>& hold = holds_[k];
     if (hold.active) continue;
     const Real by = passed_by(hold.constraint, v);
     if (!(by > most + kRounding * (std::abs(hold.constraint.bound) + speed))) continue;
     most = by;
-    passed = &hold;
+    passed = k;
   }
-  if (passed != nullptr) passed->active = true;
-  return passed != nullptr;
+  return passed;
+}
+
+template <class Real>
+bool Corner<Real>::take_up(const Vector3& v) {
+  const std::size_t passed = most_passed(v);
+  if (passed == npos) return false;
+  holds_[passed].active = true;
+  return true;
 }
 
 template <class Real>
