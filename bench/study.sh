@@ -2,11 +2,20 @@
 # The committed studies (bench/studies): accuracy against time.
 #   bash bench/study.sh            all of them in full: hours; one that was interrupted goes on
 #   bash bench/study.sh --quick    bar, vortex and columns with fewer points: under 10 minutes on 2 cores
-#   bash bench/study.sh NAME...    some of them
+#   bash bench/study.sh NAME...    some of them; presets and plane_presets are those of --quality
 # Runs are made on one thread, so that their time is also that of the core. Pages are written to out/studies (STUDY_OUT),
 # a folder each. REPOSE names the program to use.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+# Presets are points of the columns' fronts.
+scene_of() {
+  case "$1" in
+    presets) echo bench/studies/column.json ;;
+    plane_presets) echo bench/studies/plane_column.json ;;
+    *) echo "bench/studies/$1.json" ;;
+  esac
+}
 
 quick=false names=()
 for word in "$@"; do
@@ -14,7 +23,7 @@ for word in "$@"; do
     --quick) quick=true ;;
     -*) sed -n '2,8s/^# *//p' "$0" >&2; exit 64 ;;
     *)
-      [ -f "bench/studies/$word.json" ] || { echo "bench/studies has no $word.json" >&2; exit 66; }
+      [ -f "$(scene_of "$word")" ] || { echo "bench/studies has no $word.json" >&2; exit 66; }
       names+=("$word") ;;
   esac
 done
@@ -31,9 +40,10 @@ study() {  # NAME, then what a quick one changes
   shift
   if [ ${#names[@]} -gt 0 ] && [[ " ${names[*]} " != *" $name "* ]]; then return; fi
   local folder=$out/$name change=()
-  if $quick; then folder=$folder-quick change=("$@"); fi
+  if $quick; then folder=$folder-quick; fi
+  if $quick || [[ $name == *presets ]]; then change=("$@"); fi
   echo "$name"
-  "$repose" study "bench/studies/$name.json" --out "$folder" --threads 1 "${change[@]}"
+  "$repose" study "$(scene_of "$name")" --out "$folder" --threads 1 "${change[@]}"
 }
 
 transfers=grid.transfer=mls_apic,aflip,flip
@@ -45,3 +55,10 @@ study column --vary parameters.cells=4,6,8,10 --vary grid.transfer=mls_apic,afli
   --vary bodies.column.particles_per_cell=4,8 --seeds 2 --repeat 1 \
   --reference "finest:parameters.cells=20" --reference-seeds 4
 $quick || study box
+
+# draft, standard and reference: twice the spacing of the column, its own, and half of it.
+presets() {  # NAME, cells of the grid that is finer than all, runs of it
+  study "$1" --vary parameters.cells=8,16,32 --seeds 8 --repeat 1 --reference "finest:parameters.cells=$2" --reference-seeds "$3"
+}
+$quick || presets presets 48 4
+$quick || presets plane_presets 64 8

@@ -102,7 +102,7 @@ void print_memory(const Simulation& simulation, double emission) {
   line("  writing", writing, "   while a frame is written");
 }
 
-void print_forecast(const Scene& scene, const Simulation& simulation) {
+void print_forecast(const Scene& scene, Simulation& simulation) {
   const auto particles = static_cast<double>(simulation.particles());
   const IntegratorChoice& integrator = simulation.integrator();
   const double dt = integrator.step > 0.0 ? integrator.step : simulation.longest_step();
@@ -124,6 +124,14 @@ void print_forecast(const Scene& scene, const Simulation& simulation) {
   std::printf("  time                about %.0f s on %d thread%s\n",
               steps * mean * nanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
               simulation.threads() == 1 ? "" : "s");
+  const double cells = cells_along_an_edge(scene, simulation.diagnose().volume);
+  if (const double error = outline_error(scene, cells); error > 0.0) {
+    std::printf(
+        "  error               at most about %.2g %% of a heap's outline: its sand has %.0f cells along an "
+        "edge,\n"
+        "                      and columns were studied (docs/accuracy.md)\n",
+        100.0 * std::min(error, 1.0), cells);
+  }
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 // for "about". `effect_bench --costs engine/base/costs.h` writes the rows between the marks.
 #pragma once
 
-#include <cmath>
 #include <cstring>
 #include <span>
+
+#include "engine/base/powers.h"
 
 namespace repose {
 
@@ -57,17 +58,10 @@ inline constexpr ImplicitCost kImplicitCosts[] = {
     // implicit_costs: end
 };
 
-/// ns per particle of an implicit step: straight between the rows in logarithms, for costs follow powers of the
-/// length; beyond the last row at the slope before it, below the first as the first. At least two rows,
-/// ascending.
+/// ns per particle of an implicit step: along powers, below the first row as the first.
 inline double implicit_cost(std::span<const ImplicitCost> rows, double explicit_steps) {
   if (explicit_steps <= rows.front().explicit_steps) return rows.front().nanoseconds;
-  std::size_t k = 1;
-  while (k + 1 < rows.size() && rows[k].explicit_steps < explicit_steps) ++k;
-  const ImplicitCost &low = rows[k - 1], &high = rows[k];
-  const double slope =
-      std::log(high.nanoseconds / low.nanoseconds) / std::log(high.explicit_steps / low.explicit_steps);
-  return low.nanoseconds * std::pow(explicit_steps / low.explicit_steps, slope);
+  return along_powers(rows, &ImplicitCost::explicit_steps, &ImplicitCost::nanoseconds, explicit_steps);
 }
 
 }  // namespace repose

@@ -1,7 +1,9 @@
 #include "engine/compiler/figures.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/base/accuracy.h"
 #include "engine/base/costs.h"
 #include "engine/compiler/compilation.h"
 
@@ -53,6 +55,22 @@ double emitted_by(const Scene& scene, double time) {
     particles += effect.particles_by(time, scene.grid.spacing, scene.grid.plane_strain.value_or(-1));
   });
   return particles;
+}
+
+double cells_along_an_edge(const Scene& scene, double volume) {
+  double cells = volume / std::pow(scene.grid.spacing, 3);
+  const std::vector<Inlet> mouths = inlets(scene);
+  if (!mouths.empty())
+    cells += emitted_by(scene, last_frame_time(scene)) / static_cast<double>(mouths.front().particles_per_cell);
+  return scene.grid.plane_strain ? std::sqrt(cells) : std::cbrt(cells);
+}
+
+double outline_error(const Scene& scene, double cells) {
+  const auto has_cone = [](const MaterialDescription& material) {
+    return std::visit([](const auto& parameters) { return parameters.kHasCone; }, material.parameters);
+  };
+  const bool sand = std::any_of(scene.materials.begin(), scene.materials.end(), has_cone);
+  return sand && cells > 0.0 ? expected_outline_error(cells) : 0.0;
 }
 
 std::size_t bytes_per_particle(const Scene& scene) {

@@ -30,6 +30,13 @@ double last_frame_time(const Scene& scene);
 /// How many particles inlets will have made by a time (s).
 double emitted_by(const Scene& scene, double time);
 
+/// Cells along the edge of a cube, in plane strain of a square, of all matter: `volume` (m^3) at the start, and
+/// what inlets make in all frames.
+double cells_along_an_edge(const Scene& scene, double volume);
+/// What a grid errs by in the outline of a heap with so many cells along an edge, as a share, at most about
+/// (engine/base/accuracy.h); 0 where nothing can be heaped up, since no material has a cone.
+double outline_error(const Scene& scene, double cells);
+
 /// Numbers per particle that an implicit solve keeps: a tangent, gradients, trial states, linear models.
 inline constexpr std::size_t kSolverNumbers = 75 + kMostLawChannels;
 

@@ -67,6 +67,25 @@ TEST_F(Command, Plan_TellsEffectsAndPasses) {
   EXPECT_FALSE(std::filesystem::exists(path("out"))) << "a plan writes nothing";
 }
 
+/// "at most about 12 % of a heap's outline", of a plan.
+double error_planned(const std::string& plan) {
+  const std::string before = "at most about ";
+  const std::size_t at = plan.find(before);
+  return at == std::string::npos ? 0.0 : std::stod(plan.substr(at + before.size()));
+}
+
+TEST_F(Command, Plan_TellsTheErrorOfTheGrid) {
+  const Finished coarse = repose({"plan", tiny_scene()}),
+                 fine = repose({"plan", tiny_scene(), "--quality", "reference"});
+  EXPECT_THAT(coarse.out, HasSubstr("has 5 cells along an edge")) << "1000 particles, 8 a cell";
+  EXPECT_THAT(fine.out, HasSubstr("has 10 cells along an edge"));
+  EXPECT_GT(error_planned(fine.out), 0.0);
+  EXPECT_GE(error_planned(coarse.out), 1.6 * error_planned(fine.out)) << "half the cells";
+  const Finished rubber = repose({"plan", tiny_scene(), "--set", "materials.sand={\"type\": \"elastic\"}"});
+  ASSERT_EQ(rubber.code, 0) << rubber.err;
+  EXPECT_EQ(error_planned(rubber.out), 0.0) << "rubber makes no heaps";
+}
+
 TEST_F(Command, PlanWithoutColliders_HasNoPassForThem) {
   const Finished plan = repose({"plan", tiny_scene(), "--set", "colliders=[]"});
   EXPECT_THAT(plan.out, HasSubstr("no entry in 'colliders'"));
