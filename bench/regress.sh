@@ -2,7 +2,7 @@
 # Whether anything takes more than it did: instructions, branches and cache misses per step, bytes, allocations, steps,
 # iterations, hashes, against bench/baselines. Counts repeat on any machine with AVX2; times do not, and are compared in
 # pairs alone.
-#   bash bench/regress.sh [--quick] [--report FOLDER]   0: as before, 1: worse, or other than accepted, 2: not measured
+#   bash bench/regress.sh [--quick | --only CASE,...] [--report FOLDER]   0: as before, 1: worse, or other than accepted, 2: not measured
 #   bash bench/regress.sh --accept "REASON"             what is measured now is right; the reason goes into the log
 #   bash bench/regress.sh --ab BASE HEAD [--pairs N]    processor time of two commits, or of two builds of the command
 set -euo pipefail

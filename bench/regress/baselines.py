@@ -6,7 +6,8 @@ import statistics
 
 HISTORY = 20
 LEAST, MOST = 0.002, 0.01  # shares of a count
-OTHER = {"misses": (0.01, 0.05), "memory": (0.02, 0.05)}
+FUNCTION, NOTABLE = 0.01, 0.003  # how far a function's instructions may go, if it has this share of a step's
+OTHER = {"misses": (0.01, 0.05), "memory": (0.02, 0.05), "error": (0.02, 0.05), "value": (0.01, 0.02)}
 
 Figure = collections.namedtuple("Figure", "kind value changes")
 
@@ -61,8 +62,25 @@ def compare(known, measured):
             rows.append(("as before" if same else "worse", name, old.value, text_of(value), 0.0, 0.0))
             continue
         by = change(old.value, value)
-        verdict = "worse" if by > limit else "better" if by < -limit else "as before"
+        away = abs(by) if kind == "value" else by
+        verdict = "worse" if away > limit else "better" if away < -limit else "as before"
         rows.append((verdict, name, old.value, text_of(value), by, limit))
+    return rows
+
+
+def compare_functions(folder, where):
+    """Rows as compare() has them, of functions that take much of a step: a kernel that grows must not hide in the whole.
+    What has another name now is in the whole alone."""
+    rows = []
+    for case in sorted(where):
+        known, total = read_functions(folder, case), sum(where[case].values())
+        for name in sorted(known.keys() & where[case].keys()):
+            old, new = known[name], where[case][name]
+            if max(old, new) < NOTABLE * total:
+                continue
+            by = change(old, new)
+            verdict = "worse" if by > FUNCTION else "better" if by < -FUNCTION else "as before"
+            rows.append((verdict, f"{case}: instructions of {name}", f"{old:.0f}", f"{new:.0f}", by, FUNCTION))
     return rows
 
 

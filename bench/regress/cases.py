@@ -63,3 +63,19 @@ CASES = [
 OUTPUT = Case("output", ("output", {"vdb": True, "checkpoint": True, "surface": {}, "fog": {},
                                     "attributes": ["stress", "pressure", "speed", "density"]}),
               ("time.frames", 2), quick=True)
+
+
+class Study:
+    """A run of a committed study (bench/studies), small enough for a gate, and how its figures of merit are judged:
+    an "error" is worse where it grows, a "value" where it is another."""
+
+    def __init__(self, name, kinds, *overrides):
+        self.name, self.kinds, self.overrides = name, kinds, overrides
+
+
+STUDIES = [
+    Study("bar", {"period": "value", "damping": "error"}, "parameters.cells=16"),
+    Study("vortex", {"displacement_error": "error"}, "parameters.cells=12"),
+    Study("plane_column", {"run_out": "value", "heap": "value"}, "parameters.cells=8"),
+    Study("column", {"run_out": "value", "heap": "value"}, "parameters.cells=6"),
+]

@@ -159,3 +159,15 @@ def of_solves(program, case):
             frames = json.load(text)["frames"]
         return {f"{what} of a frame": ("exact", sum(frame[key] for frame in frames))
                 for what, key in (("Newton iterations", "newton_iterations"), ("linear iterations", "solver_iterations"))}
+
+
+def of_study(program, study):
+    """Figures of merit: whether what it computes is still as near to the truth."""
+    with tempfile.TemporaryDirectory() as out:
+        file = os.path.join(out, "figures.json")
+        scene = os.path.join(HERE, "..", "studies", study.name + ".json")
+        run([program, "figures", scene, "--threads", "1", "--target", "avx2", "--json", file,
+             *(word for override in study.overrides for word in ("--set", override))])
+        with open(file) as text:
+            found = json.load(text)["figures"]
+        return {name: (kind, found[name]["value"]) for name, kind in study.kinds.items()}

@@ -12,31 +12,35 @@ import paired
 import report
 
 
-def measure_all(program, quick, no_timer, jobs):
-    chosen = [case for case in cases.CASES if case.quick or not quick]
+def measure_all(program, quick, only, no_timer, jobs):
+    """`only`: names of cases, "output", "study NAME"; none: all."""
+    wanted = [case for case in cases.CASES if (case.name in only if only else case.quick or not quick)]
+    studies = [study for study in cases.STUDIES if not only or f"study {study.name}" in only]
     figures, where, lines = {}, {}, {}
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        made = {case.name: pool.submit(measure.of_case, program, case, no_timer, not quick) for case in chosen}
-        solves = {case.name: pool.submit(measure.of_solves, program, case) for case in chosen if "implicit" in case.name}
-        output = pool.submit(measure.of_output, program)
-        for case in chosen:
+        made = {case.name: pool.submit(measure.of_case, program, case, no_timer, not quick) for case in wanted}
+        solves = {case.name: pool.submit(measure.of_solves, program, case) for case in wanted if "implicit" in case.name}
+        runs = {"output": pool.submit(measure.of_output, program)} if not only or "output" in only else {}
+        runs.update({f"study {study.name}": pool.submit(measure.of_study, program, study) for study in studies})
+        for case in wanted:
             found, where[case.name], lines[case.name] = made[case.name].result()
             if case.name in solves:
                 found.update(solves[case.name].result())
             figures.update({f"{case.name}: {name}": figure for name, figure in found.items()})
-        figures.update({f"output: {name}": figure for name, figure in output.result().items()})
+        for what, made_run in runs.items():
+            figures.update({f"{what}: {name}": figure for name, figure in made_run.result().items()})
     return figures, where, lines
 
 
 def gate(options):
     known = baselines.read(options.baselines)
-    measured, where, lines = measure_all(options.program, options.quick, options.no_timer, options.jobs)
-    if options.quick:  # of what the whole gate knows, what the quick one asks
+    measured, where, lines = measure_all(options.program, options.quick, options.only, options.no_timer, options.jobs)
+    if options.quick or options.only:  # of what the whole gate knows, what was asked
         known = {name: figure for name, figure in known.items() if name in measured}
     if not known and not options.accept:
         print("regress: nothing has been accepted yet; --accept \"REASON\" makes what is measured the baseline", file=sys.stderr)
         return 2
-    rows = baselines.compare(known, measured)
+    rows = baselines.compare(known, measured) + baselines.compare_functions(options.baselines, where)
     told = report.text(rows, where, lines, options.baselines)
     print(told)
     if options.report:
@@ -46,8 +50,8 @@ def gate(options):
             with open(os.path.join(options.report, name), "w") as file:
                 file.write(content)
     if options.accept:
-        if options.quick:
-            sys.exit("regress: the whole gate is accepted, not its quick part")
+        if options.quick or options.only:
+            sys.exit("regress: the whole gate is accepted, not a part of it")
         baselines.accept(options.baselines, known, measured, where, options.accept)
         return 0
     return 1 if any(row[0] in ("worse", "gone", "new") for row in rows) else 0
@@ -57,7 +61,7 @@ def ab(options):
     worse = False
     print("| case | median of HEAD / BASE | 95 % | verdict |\n| --- | --- | --- | --- |")
     for case in cases.CASES:
-        if not case.quick:
+        if not (case.name in options.only if options.only else case.quick):
             continue
         median, low, high = paired.ratio(options.base, options.head, case, options.pairs)
         slower = low > paired.WORSE
@@ -74,12 +78,15 @@ def main():
     of_gate.add_argument("--no-timer", required=True, help="a library, for valgrind")
     of_gate.add_argument("--baselines", required=True)
     of_gate.add_argument("--quick", action="store_true")
+    only = {"default": [], "type": lambda names: names.split(","), "metavar": "CASE,..."}
+    of_gate.add_argument("--only", **only, help="these cases; or output, or study NAME")
     of_gate.add_argument("--accept", default="", metavar="REASON")
     of_gate.add_argument("--report", default="", metavar="FOLDER")
     of_gate.add_argument("--jobs", type=int, default=os.cpu_count())
     of_ab = commands.add_parser("ab")
     of_ab.add_argument("base")
     of_ab.add_argument("head")
+    of_ab.add_argument("--only", **only, help="these cases")
     of_ab.add_argument("--pairs", type=int, default=25)
     options = parser.parse_args()
     try:

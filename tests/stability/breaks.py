@@ -24,10 +24,11 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from break_list import BREAKS
+from broken_copy import Copy, ROOT, broken_text
+from marked_page import put_between, table
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PRESET = "release"
 BEGIN, END = "<!-- breaks: begin -->", "<!-- breaks: end -->"
 HEAD = ("break", "what", "cases seen failing")
 EFFECTS, RESCALING, SOAK = 46, 50, 43  # cases whose tests have names, or a program, of their own
@@ -44,39 +45,6 @@ def numbered_cases():
 def digest(broken):
     """Of a break, so that what was found of another wording of it is not taken for this one's."""
     return hashlib.sha256(json.dumps(dataclasses.asdict(broken), sort_keys=True).encode()).hexdigest()[:16]
-
-
-class Copy:
-    """The sources and their build, apart from the checkout."""
-
-    def __init__(self, folder, jobs):
-        self.folder, self.jobs = folder, jobs
-        self.build, self.logs = folder / "build" / PRESET, folder / "build/logs"
-
-    def sync(self):
-        """Makes the files those of the checkout; what is the same keeps its time."""
-        listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z"], capture_output=True, text=True, check=True)
-        wanted = {name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()}
-        for name in wanted:
-            here, there = ROOT / name, self.folder / name
-            if there.is_file() and there.read_bytes() == here.read_bytes():
-                continue
-            there.parent.mkdir(parents=True, exist_ok=True)
-            there.write_bytes(here.read_bytes())
-            there.chmod(here.stat().st_mode)
-        for there in self.folder.rglob("*"):
-            name = there.relative_to(self.folder)
-            if name.parts[0] != "build" and there.is_file() and str(name) not in wanted:
-                there.unlink()
-        self.logs.mkdir(parents=True, exist_ok=True)
-
-    def call(self, log, *words):
-        done = subprocess.run(words, cwd=self.folder, stdout=log, stderr=subprocess.STDOUT)
-        return done.returncode == 0
-
-    def make(self, log, trials):
-        targets = sorted({target for trial in trials for target in trial.targets()})
-        return self.call(log, "cmake", "--build", self.build, "-j", str(self.jobs), "--target", *targets)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -126,13 +94,6 @@ def trials_of(broken, seconds):
     return [Trial(case, 3600.0 if broken.long else seconds) for case in broken.cases]
 
 
-def broken_text(broken, text):
-    if text.count(broken.find) != 1:
-        sys.exit(f"break {broken.name}: what it looks for stands {text.count(broken.find)} times, not once, in "
-                 f"{broken.file}; that code has changed: change tests/stability/break_list.py too")
-    return text.replace(broken.find, broken.replace)
-
-
 def try_trial(name, trial, copy, log):
     begun = time.monotonic()
     how, what = trial.run(copy, log)
@@ -140,21 +101,20 @@ def try_trial(name, trial, copy, log):
     return how, what
 
 
+def targets_of(trials):
+    return sorted({target for trial in trials for target in trial.targets()})
+
+
 def try_break(broken, copy, seconds):
     """{case: what became of it, and what was wrong}"""
-    trials, path = trials_of(broken, seconds), copy.folder / broken.file
-    original = path.read_text()
-    with open(copy.logs / f"{broken.name}.log", "w", buffering=1) as log:
-        try:
-            path.write_text(broken_text(broken, original))
-            begun = time.monotonic()
-            if not copy.make(log, trials):
-                print(f"  {broken.name}: does not build, see {log.name}", flush=True)
-                return {str(trial.case): ("does not build", f"see {log.name}") for trial in trials}
-            print(f"  {broken.name}: built, {time.monotonic() - begun:.0f} s", flush=True)
-            return {str(trial.case): try_trial(broken.name, trial, copy, log) for trial in trials}
-        finally:
-            path.write_text(original)
+    trials = trials_of(broken, seconds)
+    with open(copy.logs / f"{broken.name}.log", "w", buffering=1) as log, copy.broken(broken):
+        begun = time.monotonic()
+        if not copy.make(log, targets_of(trials)):
+            print(f"  {broken.name}: does not build, see {log.name}", flush=True)
+            return {str(trial.case): ("does not build", f"see {log.name}") for trial in trials}
+        print(f"  {broken.name}: built, {time.monotonic() - begun:.0f} s", flush=True)
+        return {str(trial.case): try_trial(broken.name, trial, copy, log) for trial in trials}
 
 
 def try_unbroken(broken, copy, seconds):
@@ -162,7 +122,7 @@ def try_unbroken(broken, copy, seconds):
     trials = sorted({trial for one in broken for trial in trials_of(one, seconds)}, key=lambda trial: trial.case)
     wrong = []
     with open(copy.logs / "unbroken.log", "w", buffering=1) as log:
-        if not copy.make(log, trials):
+        if not copy.make(log, targets_of(trials)):
             sys.exit(f"the unbroken engine does not build: see {log.name}")
         for trial in trials:
             how, what = try_trial("unbroken", trial, copy, log)
@@ -177,15 +137,6 @@ def row_of(broken, found):
         how = found.get(str(case), ["not run"])[0]
         cells.append(str(case) if how == "failed" else f"{case} ({how})")
     return [broken.name, broken.what, ", ".join(cells)]
-
-
-def write_page(page, rows, summary):
-    text = page.read_text()
-    if BEGIN not in text or END not in text:
-        sys.exit(f"{page}: has no lines {BEGIN} and {END}")
-    made = [BEGIN, "", f"{datetime.date.today()}. {summary}", "", "| " + " | ".join(HEAD) + " |"]
-    made += ["| " + " | ".join("---" for _ in HEAD) + " |"] + ["| " + " | ".join(row) + " |" for row in rows]
-    page.write_text(text[:text.index(BEGIN)] + "\n".join(made + ["", END]) + text[text.index(END) + len(END):])
 
 
 def parse():
@@ -217,7 +168,7 @@ def main():
     copy.sync()
     with open(copy.logs / "build.log", "w") as log:
         all_trials = [trial for broken in chosen for trial in trials_of(broken, seconds)]
-        if not (copy.call(log, "cmake", "--preset", PRESET, "-DREPOSE_TESTS=ON") and copy.make(log, all_trials)):
+        if not (copy.configure(log) and copy.make(log, targets_of(all_trials))):
             sys.exit(f"the copy does not build: see {log.name}")
     kept = copy.logs / "found.json"
     found = json.loads(kept.read_text()) if asked.only and kept.exists() else {}
@@ -240,7 +191,7 @@ def main():
             print(f"{row[0]:22}{row[2]:30}  {row[1]}")
     print("\n".join([summary] + wrong))
     if asked.page:
-        write_page(asked.page, rows, summary)
+        put_between(asked.page, BEGIN, END, [f"{datetime.date.today()}. {summary}", "", *table(HEAD, rows)])
     sys.exit(1 if wrong else 0)
 
 
