@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
+#include <map>
+#include <utility>
 
 #include "engine/compiler/figures.h"
 #include "engine/effect/effects.h"
@@ -107,22 +110,35 @@ Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& argume
   return costs;
 }
 
-std::string to_cost_rows(const std::vector<EffectCost>& costs) {
+std::string to_cost_rows(const std::vector<EffectCost>& costs, std::span<const Cost> kept) {
   std::vector<double> bare;
-  std::vector<std::pair<std::string, double>> dearest;
+  std::map<std::string, double> dearest;  // times the bare step, beyond it
   for (const EffectCost& cost : costs) {
-    const double without = cost.nanoseconds / cost.ratio, more = std::max(0.0, cost.nanoseconds - without);
-    bare.push_back(without);
-    if (dearest.empty() || dearest.back().first != cost.trial.effect)
-      dearest.emplace_back(cost.trial.effect, 0.0);
-    dearest.back().second = std::max(dearest.back().second, more);
+    bare.push_back(cost.nanoseconds / cost.ratio);
+    double& most = dearest[cost.trial.effect];
+    most = std::max(most, cost.ratio - 1.0);
   }
-  dearest.emplace(dearest.begin(), "step", median(bare));
+  const auto step = std::find_if(kept.begin(), kept.end(),
+                                 [](const Cost& cost) { return std::strcmp(cost.what, "step") == 0; });
+  const double nanoseconds = step == kept.end() ? median(bare) : step->nanoseconds;
   std::string text;
-  for (const auto& [what, nanoseconds] : dearest) {
+  const auto row = [&text](const std::string& what, double cost) {
     char line[128];
-    std::snprintf(line, sizeof line, "    {\"%s\", %.1f},\n", what.c_str(), nanoseconds);
+    std::snprintf(line, sizeof line, "    {\"%s\", %.1f},\n", what.c_str(), cost);
     text += line;
+  };
+  row("step", nanoseconds);
+  std::string before;
+  for (const EffectTrial& trial : effect_trials()) {
+    if (trial.effect == std::exchange(before, trial.effect)) continue;
+    const auto measured = dearest.find(trial.effect);
+    const auto known =
+        std::find_if(kept.begin(), kept.end(), [&](const Cost& cost) { return trial.effect == cost.what; });
+    if (measured != dearest.end()) {
+      row(trial.effect, nanoseconds * measured->second);
+    } else if (known != kept.end()) {
+      row(trial.effect, known->nanoseconds);
+    }
   }
   return text;
 }

@@ -2,9 +2,11 @@
 // particle.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "engine/base/costs.h"
 #include "engine/base/result.h"
 #include "engine/effect/effect.h"
 
@@ -38,8 +40,10 @@ struct EffectCost {
 /// Errors: 65, 70 of the scenes; 64 for an effect that is not in the list.
 Result<std::vector<EffectCost>> bench_effects(const EffectBenchArguments& arguments);
 
-/// The rows of engine/base/costs.h: the bare step, and of each effect its dearest example.
-std::string to_cost_rows(const std::vector<EffectCost>& costs);
+/// The rows of engine/base/costs.h: the bare step, and of each effect its dearest example. Of what was not
+/// measured the rows of `kept` stay; if it has the bare step, effects are told as shares of that one, so that
+/// rows measured on several machines fit together.
+std::string to_cost_rows(const std::vector<EffectCost>& costs, std::span<const Cost> kept);
 
 /// The table of docs/effects.md.
 std::string to_markdown(const std::vector<EffectCost>& costs, const EffectBenchArguments& arguments);

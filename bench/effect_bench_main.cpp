@@ -14,9 +14,10 @@ const Marks kPageMarks{"<!-- effect_bench: begin -->\n", "<!-- effect_bench: end
 const Marks kImplicitMarks{"    // implicit_costs: begin\n", "    // implicit_costs: end\n"};
 const Marks kCostMarks{"    // effect_bench: begin\n", "    // effect_bench: end\n"};
 
-/// Both tables of the file: effects, and implicit steps.
-Result<void> put_costs(const std::string& path, const std::vector<EffectCost>& effects) {
-  if (auto put = put_into(path, kCostMarks, to_cost_rows(effects)); !put) return put;
+/// Both tables of the file: effects, and implicit steps. Where only some effects were measured all else stays.
+Result<void> put_costs(const std::string& path, const std::vector<EffectCost>& effects, bool some) {
+  const std::span<const Cost> kept = some ? std::span<const Cost>(kCosts) : std::span<const Cost>();
+  if (auto put = put_into(path, kCostMarks, to_cost_rows(effects, kept)); !put || some) return put;
   const auto implicit = bench_implicit_costs({});
   if (!implicit) return implicit.error();
   return put_into(path, kImplicitMarks, to_rows(*implicit));
@@ -35,7 +36,8 @@ int main(int count, char** words) {
   app.add_option("--page", page, "put the table into this page, docs/effects.md");
   app.add_option(
       "--costs", costs_path,
-      "put what forecasts use into this file, engine/base/costs.h; with implicit steps, two minutes more");
+      "put what forecasts use into this file, engine/base/costs.h; with implicit steps, two minutes more; with "
+      "--only, the rows of these effects");
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
@@ -46,7 +48,7 @@ int main(int count, char** words) {
   if (!costs) return fail(costs.error());
   const std::string table = to_markdown(*costs, arguments);
   if (!costs_path.empty()) {
-    if (auto put = put_costs(costs_path, *costs); !put) return fail(put.error());
+    if (auto put = put_costs(costs_path, *costs, !arguments.only.empty()); !put) return fail(put.error());
   }
   if (page.empty()) {
     std::printf("%s", table.c_str());

@@ -6,11 +6,10 @@
 
 #include <atomic>
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
-#include <new>
 #include <utility>
+
+#include "engine/base/allocator.h"
 
 namespace repose {
 
@@ -31,10 +30,8 @@ class AlignedArray {
       *this = AlignedArray();  // the old memory first, or both would be there for a moment
       const std::size_t bytes = round_up((size + kPadding / sizeof(T)) * sizeof(T));
       const std::size_t shift = bytes >= kLarge ? next_shift() : 0;
-      auto* raw = static_cast<std::byte*>(std::aligned_alloc(kAlignment, bytes + shift));
-      if (raw == nullptr) throw std::bad_alloc();
-      memory_.reset(raw);
-      data_ = reinterpret_cast<T*>(raw + shift);
+      memory_ = AllocatedBytes(bytes + shift);
+      data_ = reinterpret_cast<T*>(memory_.data() + shift);
       capacity_ = bytes / sizeof(T) - kPadding / sizeof(T);
     }
     size_ = size;
@@ -75,7 +72,7 @@ class AlignedArray {
   }
 
  private:
-  static constexpr std::size_t kAlignment = 64;
+  static constexpr std::size_t kAlignment = AllocatedBytes::kAlignment;
   static constexpr std::size_t kPadding = 64;  // bytes
   static constexpr std::size_t round_up(std::size_t bytes) {
     return (bytes + kAlignment - 1) / kAlignment * kAlignment;
@@ -88,10 +85,7 @@ class AlignedArray {
     return arrays.fetch_add(1, std::memory_order_relaxed) * 5 * kAlignment % kPage;
   }
 
-  struct Free {
-    void operator()(std::byte* raw) const { std::free(raw); }
-  };
-  std::unique_ptr<std::byte, Free> memory_;
+  AllocatedBytes memory_;
   T* data_ = nullptr;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;

@@ -11,7 +11,8 @@ namespace {
 using Argument = std::string;
 
 /// Null is as good as a default, or nobody.
-const std::set<Argument> kMayBeNull{"repose_scene_from_file/options",
+const std::set<Argument> kMayBeNull{"repose_set_allocator/allocator",
+                                    "repose_scene_from_file/options",
                                     "repose_scene_from_text/name",
                                     "repose_scene_from_text/folder",
                                     "repose_scene_from_text/options",
@@ -204,6 +205,8 @@ TEST(ApiArguments, StructsOfAnotherVersion_AreRefusedWhereverTheHeadersHaveOne) 
   const std::string text = box_scene();
   const std::uint64_t hash = engine.hash();
   OtherVersions others;
+  others.expect_refused("repose_set_allocator/allocator", room.allocator,
+                        [](const auto* given) { return repose_set_allocator(given); });
   others.expect_refused("repose_scene_from_text/options", room.scene_options, [&](const auto* given) {
     return repose_scene_from_text(text.c_str(), text.size(), nullptr, nullptr, given, &room.scene);
   });

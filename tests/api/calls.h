@@ -50,6 +50,7 @@ struct Room {
   repose_view view = repose_view_init();
   repose_measurement_info measurement = repose_measurement_info_init();
   repose_contact_info contact = repose_contact_info_init();
+  repose_allocator allocator = repose_allocator_init();
   repose_scene_options scene_options = repose_scene_options_init();
   repose_engine_options engine_options = repose_engine_options_init();
   repose_points_options points_options = repose_points_options_init();

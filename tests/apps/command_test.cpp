@@ -1,6 +1,10 @@
 // Repose tests: the commands that look without running: plan, check, bench, info, movie, schema.
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
 #include "tests/apps/command_rig.h"
 
 namespace repose {
@@ -19,6 +23,21 @@ TEST_F(Command, Help_NamesEveryCommand) {
     EXPECT_EQ(detail.code, 0) << name;
     EXPECT_THAT(detail.out, HasSubstr("Usage: repose " + std::string(name)));
   }
+}
+
+TEST_F(Command, ManualPage_NamesEveryCommand) {
+  std::ifstream file(REPOSE_SCENES "/../repose/repose.1");
+  const std::string page((std::istreambuf_iterator<char>(file)), {});
+  ASSERT_NE(page, "");
+  const std::string help = repose({"--help"}).out;
+  std::istringstream lines(help.substr(help.find("Subcommands:") + 12));
+  std::size_t commands = 0;
+  for (std::string line, name; std::getline(lines, line);) {
+    if (!(std::istringstream(line) >> name)) continue;
+    EXPECT_THAT(page, HasSubstr("\n.It Cm " + name + "\n"));
+    ++commands;
+  }
+  EXPECT_GT(commands, 10u);
 }
 
 TEST_F(Command, Bench_WritesEveryFigure) {

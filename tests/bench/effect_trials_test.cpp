@@ -180,5 +180,14 @@ INSTANTIATE_TEST_SUITE_P(All, EffectTrials, testing::ValuesIn(effect_trials()), 
   return name;
 });
 
+TEST(EffectCosts, OfEffectsThatWereNotMeasured_RowsStay) {
+  const Cost kept[] = {{"step", 20.0}, {"gravity", 1.0}, {"age", 0.5}};
+  EffectCost dear{{{"age", {}, {}}, "age"}, 11.0, 1.1}, cheap{{{"age", {}, {}}, "age"}, 10.2, 1.02};
+  EXPECT_EQ(to_cost_rows({dear, cheap}, kept),
+            "    {\"step\", 20.0},\n    {\"gravity\", 1.0},\n    {\"age\", 2.0},\n")
+      << "a tenth of the step that stands there, on whichever machine";
+  EXPECT_EQ(to_cost_rows({dear}, {}), "    {\"step\", 10.0},\n    {\"age\", 1.0},\n");
+}
+
 }  // namespace
 }  // namespace repose

@@ -87,6 +87,28 @@ REPOSE_API size_t repose_error_key(char* buffer, size_t capacity);
 REPOSE_API size_t repose_error_place(char* buffer, size_t capacity);
 /** @} */
 
+/**
+ * Where large arrays come from: the numbers of particles, nodes and solvers, next to all that grows with a
+ * scene. Lists, trees of blocks, meshes and shapes come from malloc as ever. The functions are called from any
+ * thread, also at once, and must not call the library.
+ */
+typedef struct repose_allocator {
+  uint32_t size;    /**< of the struct, bytes */
+  uint32_t version; /**< REPOSE_STRUCT_VERSION */
+  /** `bytes` is a multiple of `alignment`, 64. Null: there are none, and the call that asked answers MEMORY. */
+  void* (*allocate)(size_t bytes, size_t alignment, void* user);
+  /** What `allocate` returned, with the same numbers. */
+  void (*release)(void* memory, size_t bytes, size_t alignment, void* user);
+  void* user; /**< what both are called with; valid as long as any engine that was made meanwhile */
+} repose_allocator;
+
+/**
+ * For the whole process, from now on; arrays that lie elsewhere go back to those who gave them. Null: malloc
+ * again. Call it before engines are made, or a new allocator holds a part of them. Errors: ARGUMENT, a function
+ * is null; VERSION.
+ */
+REPOSE_API repose_status repose_set_allocator(const repose_allocator* allocator);
+
 /** Defines repose_NAME_init(), a struct that knows its size and version and is otherwise 0; then `more`. */
 #define REPOSE_DEFINE_INIT_WITH(type, more) \
   static inline type type##_init(void) {    \
@@ -98,6 +120,7 @@ REPOSE_API size_t repose_error_place(char* buffer, size_t capacity);
   }
 /** The same without more. */
 #define REPOSE_DEFINE_INIT(type) REPOSE_DEFINE_INIT_WITH(type, )
+REPOSE_DEFINE_INIT(repose_allocator)
 
 #ifdef __cplusplus
 }
