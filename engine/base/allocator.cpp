@@ -27,7 +27,7 @@ void set_allocator(const Allocator& allocator) {
 
 AllocatedBytes::AllocatedBytes(std::size_t bytes) : bytes_(bytes), from_(current.load()) {
   void* const memory = from_ == nullptr ? std::aligned_alloc(kAlignment, bytes)
-                                        : from_->allocate(bytes, kAlignment, from_->user);
+                                        : from_->allocate(from_->user, bytes, kAlignment);
   if (memory == nullptr) throw std::bad_alloc();
   data_ = static_cast<std::byte*>(memory);
 }
@@ -37,7 +37,7 @@ AllocatedBytes::~AllocatedBytes() {
   if (from_ == nullptr) {
     std::free(data_);
   } else {
-    from_->release(data_, bytes_, kAlignment, from_->user);
+    from_->release(from_->user, data_, bytes_, kAlignment);
   }
 }
 

@@ -10,8 +10,8 @@ namespace repose {
 /// Both functions null: the C library. Any thread may call them.
 struct Allocator {
   /// `bytes` is a multiple of `alignment`; null where there are none to be had.
-  void* (*allocate)(std::size_t bytes, std::size_t alignment, void* user) = nullptr;
-  void (*release)(void* memory, std::size_t bytes, std::size_t alignment, void* user) = nullptr;
+  void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment) = nullptr;
+  void (*release)(void* user, void* memory, std::size_t bytes, std::size_t alignment) = nullptr;
   void* user = nullptr;
 };
 

@@ -23,7 +23,7 @@ struct Host {
   ~Host() { repose_set_allocator(nullptr); }
   Host(const Host&) = delete;
 
-  static void* give(std::size_t bytes, std::size_t alignment, void* user) {
+  static void* give(void* user, std::size_t bytes, std::size_t alignment) {
     auto& host = *static_cast<Host*>(user);
     EXPECT_EQ(alignment, 64u);
     EXPECT_EQ(bytes % alignment, 0u);
@@ -36,7 +36,7 @@ struct Host {
     host.most = std::max(host.most.load(), held);
     return std::aligned_alloc(alignment, bytes);
   }
-  static void take(void* memory, std::size_t bytes, std::size_t alignment, void* user) {
+  static void take(void* user, void* memory, std::size_t bytes, std::size_t alignment) {
     EXPECT_EQ(alignment, 64u);
     static_cast<Host*>(user)->held -= bytes;
     std::free(memory);

@@ -87,19 +87,22 @@ REPOSE_API size_t repose_error_key(char* buffer, size_t capacity);
 REPOSE_API size_t repose_error_place(char* buffer, size_t capacity);
 /** @} */
 
+/** `bytes` is a multiple of `alignment`, 64. Null: there are none, and the call that asked answers MEMORY. */
+typedef void* (*repose_allocate_fn)(void* user, size_t bytes, size_t alignment);
+/** What a repose_allocate_fn returned, with the numbers that it was called with. */
+typedef void (*repose_release_fn)(void* user, void* memory, size_t bytes, size_t alignment);
+
 /**
  * Where large arrays come from: the numbers of particles, nodes and solvers, next to all that grows with a
  * scene. Lists, trees of blocks, meshes and shapes come from malloc as ever. The functions are called from any
  * thread, also at once, and must not call the library.
  */
 typedef struct repose_allocator {
-  uint32_t size;    /**< of the struct, bytes */
-  uint32_t version; /**< REPOSE_STRUCT_VERSION */
-  /** `bytes` is a multiple of `alignment`, 64. Null: there are none, and the call that asked answers MEMORY. */
-  void* (*allocate)(size_t bytes, size_t alignment, void* user);
-  /** What `allocate` returned, with the same numbers. */
-  void (*release)(void* memory, size_t bytes, size_t alignment, void* user);
-  void* user; /**< what both are called with; valid as long as any engine that was made meanwhile */
+  uint32_t size;               /**< of the struct, bytes */
+  uint32_t version;            /**< REPOSE_STRUCT_VERSION */
+  repose_allocate_fn allocate; /**< not null */
+  repose_release_fn release;   /**< not null */
+  void* user;                  /**< what both are called with; valid as long as what they gave is held */
 } repose_allocator;
 
 /**
