@@ -7,6 +7,7 @@ import statistics
 HISTORY = 20
 LEAST, MOST = 0.002, 0.01  # shares of a count
 FUNCTION, NOTABLE = 0.01, 0.003  # how far a function's instructions may go, if it has this share of a step's
+KEPT = 0.001  # functions of a smaller share are not written down
 OTHER = {"misses": (0.01, 0.05), "memory": (0.02, 0.05), "error": (0.02, 0.05), "value": (0.01, 0.02)}
 
 Figure = collections.namedtuple("Figure", "kind value changes")
@@ -106,8 +107,10 @@ def accept(folder, known, measured, where, reason):
     os.makedirs(os.path.join(folder, "functions"), exist_ok=True)
     for case, functions in where.items():
         with open(os.path.join(folder, "functions", case.replace(" ", "_") + ".txt"), "w") as text:
-            for function, count in sorted(functions.items(), key=lambda item: -item[1])[:60]:
-                text.write(f"{count:.0f}\t{function}\n")
+            least = KEPT * sum(functions.values())
+            for function, count in sorted(functions.items(), key=lambda item: -item[1]):
+                if count >= least:
+                    text.write(f"{count:.0f}\t{function}\n")
 
 
 def read_functions(folder, case):

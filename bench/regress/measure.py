@@ -41,6 +41,11 @@ def bench(program, case, steps, before=()):
             return json.load(text)
 
 
+def short_name(function):
+    """Names of templates can be longer than a page; what they begin with tells them apart."""
+    return re.sub(r"\(anonymous namespace\)::|repose::", "", function)[:120]
+
+
 def read_callgrind(path):
     """Events by name, of each function, and of each line of each function where the program knows its lines."""
     events, functions, lines = [], collections.defaultdict(collections.Counter), collections.defaultdict(collections.Counter)
@@ -51,7 +56,7 @@ def read_callgrind(path):
     def named(kind, text):
         found = re.match(r"\((\d+)\)(?: (.*))?", text)
         if found.group(2) is not None:
-            names[kind][found.group(1)] = found.group(2)
+            names[kind][found.group(1)] = short_name(found.group(2)) if kind == "fn" else found.group(2)
         return names[kind].get(found.group(1), "?")
 
     with open(path) as text:
@@ -119,7 +124,8 @@ def of_case(program, case, no_timer, caches):
     figures["peak memory, bytes"] = ("memory", have["peak_rss_bytes"])
     if case.quick:
         count = [allocations(program, case, steps, no_timer) for steps in (case.few, case.more)]
-        figures["heap allocations per step"] = ("exact", (count[1] - count[0]) / (case.more - case.few))
+        # One or two of a run are those of its report.
+        figures["heap allocations per step"] = ("exact", round((count[1] - count[0]) / (case.more - case.few)))
     few, few_lines = counted(program, case, case.few, no_timer, caches)
     more, more_lines = counted(program, case, case.more, no_timer, caches)
     steps = case.more - case.few
