@@ -62,3 +62,20 @@ presets() {  # NAME, cells of the grid that is finer than all, runs of it
 }
 $quick || presets presets 48 4
 $quick || presets plane_presets 64 8
+
+# Beyond what --quick makes unless it is asked for by name.
+if ! $quick || [ ${#names[@]} -gt 0 ]; then
+  correction="volume_correction=absent,{}"
+  study incline --vary parameters.cells=3,6,12 --vary "$transfers" --seeds 2
+  study silo --vary parameters.cells=8,16 --vary grid.transfer=mls_apic,aflip --vary "$correction" --seeds 2 \
+    --reference "finest:parameters.cells=32" --reference-seeds 1
+  study hourglass --vary parameters.cells=4,6 --vary grid.transfer=mls_apic,aflip --vary "$correction" --seeds 2 \
+    --reference "finest:parameters.cells=12; volume_correction={}" --reference-seeds 1
+  study drum --vary grid.transfer=mls_apic,aflip --vary "density_correction=absent,{}" --vary "$correction" --seeds 3 \
+    --reference "finest:parameters.cells=40; density_correction={}; volume_correction={}" --reference-seeds 1
+  study oedometer --vary parameters.cells=16,32 --vary bodies.block.particles_per_cell=4,9,16 \
+    --vary bodies.block.sampling=jittered,poisson_disk --seeds 1
+  study softness --set parameters.cells=8 --vary grid.transfer=mls_apic,aflip \
+    --vary parameters.youngs_modulus=3.537e4,3.537e5,3.537e6,3.537e7 --seeds 3 \
+    --reference "finest:parameters.youngs_modulus=3.537e8; grid.transfer=aflip" --reference-seeds 2
+fi
