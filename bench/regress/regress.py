@@ -12,13 +12,13 @@ import paired
 import report
 
 
-def measure_all(program, quick, only, no_timer, jobs):
+def measure_all(program, quick, only, caches, no_timer, jobs):
     """`only`: names of cases, "output", "study NAME"; none: all."""
     wanted = [case for case in cases.CASES if (case.name in only if only else case.quick or not quick)]
     studies = [study for study in cases.STUDIES if not only or f"study {study.name}" in only]
     figures, where, lines = {}, {}, {}
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        made = {case.name: pool.submit(measure.of_case, program, case, no_timer, not quick) for case in wanted}
+        made = {case.name: pool.submit(measure.of_case, program, case, no_timer, caches and not quick) for case in wanted}
         solves = {case.name: pool.submit(measure.of_solves, program, case) for case in wanted if "implicit" in case.name}
         runs = {"output": pool.submit(measure.of_output, program)} if not only or "output" in only else {}
         runs.update({f"study {study.name}": pool.submit(measure.of_study, program, study) for study in studies})
@@ -34,8 +34,8 @@ def measure_all(program, quick, only, no_timer, jobs):
 
 def gate(options):
     known = baselines.read(options.baselines)
-    measured, where, lines = measure_all(options.program, options.quick, options.only, options.no_timer, options.jobs)
-    if options.quick or options.only:  # of what the whole gate knows, what was asked
+    measured, where, lines = measure_all(options.program, options.quick, options.only, options.caches, options.no_timer, options.jobs)
+    if options.quick or options.only or not options.caches:  # of what the whole gate knows, what was asked
         known = {name: figure for name, figure in known.items() if name in measured}
     if not known and not options.accept:
         print("regress: nothing has been accepted yet; --accept \"REASON\" makes what is measured the baseline", file=sys.stderr)
@@ -50,9 +50,10 @@ def gate(options):
             with open(os.path.join(options.report, name), "w") as file:
                 file.write(content)
     if options.accept:
-        if options.quick or options.only:
-            sys.exit("regress: the whole gate is accepted, not a part of it")
-        baselines.accept(options.baselines, known, measured, where, options.accept)
+        if options.quick:
+            sys.exit("regress: the whole gate is accepted, or the cases of --only, not the quick part of them")
+        baselines.accept(options.baselines, baselines.read(options.baselines), measured, where, options.accept,
+                         bool(options.only) or not options.caches)
         return 0
     return 1 if any(row[0] in ("worse", "gone", "new") for row in rows) else 0
 
@@ -80,6 +81,7 @@ def main():
     of_gate.add_argument("--quick", action="store_true")
     only = {"default": [], "type": lambda names: names.split(","), "metavar": "CASE,..."}
     of_gate.add_argument("--only", **only, help="these cases; or output, or study NAME")
+    of_gate.add_argument("--no-caches", dest="caches", action="store_false", help="all but misses and branches")
     of_gate.add_argument("--accept", default="", metavar="REASON")
     of_gate.add_argument("--report", default="", metavar="FOLDER")
     of_gate.add_argument("--jobs", type=int, default=os.cpu_count())

@@ -8,7 +8,9 @@ def moved(before, now, most=8):
     """Functions by how much more, or fewer, of their instructions a step takes."""
     changes = {name: now.get(name, 0) - before.get(name, 0) for name in before.keys() | now.keys()}
     total = sum(before.values()) or 1
-    rows = [(count, name) for name, count in changes.items() if abs(count) > 2e-4 * total]
+    # What has no row before was too small for one.
+    least = {name: 2e-4 * total + (0 if name in before else baselines.KEPT * total) for name in changes}
+    rows = [(count, name) for name, count in changes.items() if abs(count) > least[name]]
     return sorted(rows, key=lambda row: -abs(row[0]))[:most]
 
 

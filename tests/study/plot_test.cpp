@@ -112,6 +112,18 @@ TEST(Charts, OfAStudy_ShowAllThatCameToAnEndAndKeepTheRest) {
   EXPECT_EQ(charts_of(report.head, made.plan, summary, 2).size(), 1u) << "an error is its own value";
 }
 
+TEST(Charts, OfWhatIsNotMadeYet_ShowNothing) {
+  MadeStudy made;
+  std::erase_if(made.runs, [](const StudyRun& run) { return run.point == 4; });
+  const Summary summary = summarize(made.plan, made.runs);
+  const StudyReport report = made.report(summary);
+  const Plot error = charts_of(report.head, made.plan, summary, 0)[0];
+  EXPECT_EQ(error.marks.size(), 3u);
+  EXPECT_EQ(error.margin.size(), 2u) << "it has not given out";
+  EXPECT_EQ(report.json()["points"][4]["state"], "not made yet");
+  EXPECT_THAT(report.page(), HasSubstr("not made yet"));
+}
+
 TEST(Charts, WithoutAReference_ShowValues) {
   const MadeStudy made(0);
   const Summary summary = summarize(made.plan, made.runs);

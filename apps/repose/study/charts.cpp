@@ -185,7 +185,7 @@ class Charts {
     plot.legend = looks_.legend;
     for (std::size_t k = 0; k < summary_.points.size(); ++k) {
       const PointSummary& point = summary_.points[k];
-      if (point.whole() && point.figures[index_].figure.count > 0) continue;
+      if (!point.made() || (point.whole() && point.figures[index_].figure.count > 0)) continue;
       Mark mark = mark_of(k);
       if (!point.refused.empty() || !(point.seconds.median > 0.0)) mark.x = NAN;
       plot.margin.push_back(mark);

@@ -45,9 +45,9 @@ class Page {
   std::string table() const;
   std::string row(std::size_t k) const;
   std::string gave_out() const;
-  bool any_gave_out() const {
+  bool any_incomplete() const {
     return std::any_of(summary_.points.begin(), summary_.points.end(),
-                       [](const PointSummary& p) { return p.gave_out > 0 || !p.refused.empty(); });
+                       [](const PointSummary& p) { return p.gave_out > 0 || !p.refused.empty() || !p.made(); });
   }
   std::string method() const;
   std::string data() const;
@@ -172,10 +172,11 @@ std::string Page::row(std::size_t k) const {
     html += cell(written ? "" : value, value, "word", written ? value : "");
   }
   const std::string state = !p.refused.empty() ? "refused"
+                            : !p.made()        ? "not made yet"
                             : p.gave_out == 0
                                 ? "complete"
                                 : std::to_string(p.gave_out) + " of " + std::to_string(p.runs) + " gave out";
-  if (any_gave_out()) html += bad ? cell(state, state, "word") : cell("", state, "word", state);
+  if (any_incomplete()) html += bad || !p.made() ? cell(state, state, "word") : cell("", state, "word", state);
   const std::string spread = p.seconds.high > p.seconds.low
                                  ? short_number(p.seconds.low) + "\u2013" + short_number(p.seconds.high)
                                  : "";
@@ -204,7 +205,7 @@ std::string Page::table() const {
   column("point", "word");
   if (report_.head.vary.empty()) column("settings", "word");
   for (const Vary& vary : report_.head.vary) column(vary.key, "word");
-  if (any_gave_out()) column("state", "word");
+  if (any_incomplete()) column("state", "word");
   for (const char* name : {"time [s]", "particles", "steps", "memory [MB]"}) column(name);
   for (std::size_t f = 0; f < plan_.study.figures.size(); ++f) {
     const Figure& figure = plan_.study.figures[f];

@@ -34,6 +34,7 @@ Json::Value point_json(const StudyPlan& plan, const PointSummary& point) {
   Json::Value json;
   json["settings"] = settings_json(point.point);
   json["state"] = !point.refused.empty() ? "refused"
+                  : !point.made()        ? "not made yet"
                   : point.gave_out == 0  ? "complete"
                   : point.whole()        ? "gave out in part"
                                          : "gave out";

@@ -58,6 +58,8 @@ struct PointSummary {
   std::vector<PointFigure> figures;  ///< in the order of the study's
 
   bool whole() const { return runs > gave_out; }
+  /// Or it waits for a study that was interrupted to go on.
+  bool made() const { return runs > 0 || !refused.empty(); }
 };
 
 /// What a figure is compared with.
