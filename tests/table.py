@@ -15,6 +15,8 @@ import re
 import subprocess
 import sys
 
+from marked_page import put_between, table
+
 
 @dataclasses.dataclass
 class Kind:
@@ -62,11 +64,6 @@ def rows_of(program, tests, kind):
     return [[cell.strip() for cell in row] for row in rows], done.returncode == 0
 
 
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
-    return lines + ["| " + " | ".join(row) + " |" for row in rows]
-
-
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("kind", choices=KINDS)
@@ -91,13 +88,8 @@ def main():
               f"{kind.good}, {len(missed)} missed and known, {len(failed)} fail"
     print(summary)
     if asked.page:
-        begin, end = f"<!-- {asked.kind}: begin -->", f"<!-- {asked.kind}: end -->"
-        page = asked.page.read_text()
-        if begin not in page or end not in page:
-            sys.exit(f"{asked.page}: has no lines {begin} and {end}")
-        made = [begin, "", f"{datetime.date.today()}, {processor()}, {target()}. {summary}.", ""]
-        made += table(kind.head, rows) + ["", end]
-        asked.page.write_text(page[:page.index(begin)] + "\n".join(made) + page[page.index(end) + len(end):])
+        put_between(asked.page, f"<!-- {asked.kind}: begin -->", f"<!-- {asked.kind}: end -->",
+                    [f"{datetime.date.today()}, {processor()}, {target()}. {summary}.", "", *table(kind.head, rows)])
     sys.exit(0 if well and not failed else 1)
 
 
