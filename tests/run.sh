@@ -7,14 +7,16 @@
 #                                          case notices a broken engine (tests/stability/breaks.py)
 #   bash tests/run.sh --stability [--page FILE]
 #                                          the battery of hard cases as a table, and as a page of Markdown
+#   bash tests/run.sh --validation [--page FILE]
+#                                          the laws, each with its control, in the same way
 #   bash tests/run.sh --build-only         stops after the build
 # REPOSE_PRESET chooses the preset (default: release).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-usage() { sed -n '2,11s/^# *//p' "$0" >&2; exit 64; }
+usage() { sed -n '2,13s/^# *//p' "$0" >&2; exit 64; }
 
-build_only=false all=false stability=false part= page=
+build_only=false all=false table= part= page=
 while [ $# -gt 0 ]; do
   case "$1" in
     --build-only) build_only=true ;;
@@ -25,13 +27,14 @@ while [ $# -gt 0 ]; do
         "" | --*) ;;
         *) usage ;;
       esac ;;
-    --stability) stability=true ;;
+    --stability) table=battery ;;
+    --validation) table=laws ;;
     --page) [ $# -gt 1 ] || usage; page=$2; shift ;;
     *) usage ;;
   esac
   shift
 done
-[ -z "$page" ] || $stability || usage
+[ -z "$page" ] || [ -n "$table" ] || usage
 
 packages=--tests
 $all && packages=--all
@@ -69,8 +72,8 @@ esac
 build "$preset"
 $build_only && exit 0
 
-if $stability; then
-  python3 tests/stability/table.py "build/$preset" ${page:+--page "$page"}
+if [ -n "$table" ]; then
+  python3 tests/table.py "$table" "build/$preset" ${page:+--page "$page"}
   exit
 fi
 # Physics tests use every core by themselves: they run one at a time, the rest side by side.

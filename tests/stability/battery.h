@@ -5,14 +5,11 @@
 
 #include <string>
 
+#include "tests/figures.h"
+
 namespace repose::battery {
 
-/// A bar that the engine is known to miss: the figure is shown as missed, and fails only where it is worse than
-/// it was when it was written down, or holds: then the miss is to be struck out.
-struct Missed {
-  double worst;     ///< what is measured must not be worse
-  const char* why;  ///< and where it says which remedies were tried
-};
+using figures::Missed;
 
 class Case {
  public:
@@ -34,9 +31,9 @@ class Case {
  private:
   /// `margin`: how many times the asked the measured could still grow, or shrink.
   void line(const std::string& what, const std::string& measured, const std::string& asked, double margin,
-            const char* verdict) const;
-  void bound(const std::string& what, double measured, double asked, bool above, const std::string& unit,
-             const Missed* missed);
+            figures::Verdict verdict) const;
+  void figure(const std::string& what, double measured, const figures::Band& asked, double margin,
+              const std::string& unit, const Missed* missed = nullptr) const;
 
   int number_;
   std::string name_;
