@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/physics/physics_rig.h"
+#include "tests/physics/validation.h"
 
 namespace repose {
 namespace {
@@ -68,44 +69,43 @@ std::string theta(int degrees) {
   return "parameters.theta=" + std::to_string(degrees);
 }
 
-TEST(Incline, GravityTiltedAboveFrictionAngle_SlidesAsCoulombSays) {
-  for (const int degrees : {20, 30, 45}) {
-    const Slide figures = slide(scene_of(kTiltedGravity, {theta(degrees)}), Vec3(1, 0, 0));
-    const double error = figures.acceleration / expected(degrees, kFriction) - 1.0;
-    report("incline_error_tilted_gravity_" + std::to_string(degrees), error);
-    EXPECT_LT(std::abs(error), 0.01) << degrees;
-  }
+Vec3 slope(bool gravity, int degrees) {
+  return gravity ? Vec3(1, 0, 0) : downhill(degrees);
 }
 
-TEST(Incline, PlaneTiltedAboveFrictionAngle_SlidesAsCoulombSays) {
-  for (const int degrees : {20, 30, 45}) {
-    const Slide figures = slide(scene_of(kTiltedPlane, {theta(degrees)}), downhill(degrees));
-    const double error = figures.acceleration / expected(degrees, kFriction) - 1.0;
-    report("incline_error_tilted_plane_" + std::to_string(degrees), error);
-    EXPECT_LT(std::abs(error), 0.01) << degrees;
-  }
+constexpr const char* kSource = "Coulomb friction of nodes: Klar et al. 2016, section 8.1";
+
+/// How far the acceleration is off Coulomb's, as a share of it.
+double off_the_law(bool gravity, int degrees, double friction = kFriction) {
+  const Scene scene = scene_of(gravity ? kTiltedGravity : kTiltedPlane,
+                               {theta(degrees), "colliders[0].friction=" + std::to_string(friction)});
+  return std::abs(slide(scene, slope(gravity, degrees)).acceleration / expected(degrees, kFriction) - 1.0);
 }
 
-TEST(Incline, BelowFrictionAngle_Rests) {
-  const int degrees = 12;  // tan 12 degrees = 0.21
+TEST(Validation, BlockAboveTheAngleOfFriction_SlidesAsCoulombSays) {
   for (const bool gravity : {true, false}) {
-    const Slide figures = gravity ? slide(scene_of(kTiltedGravity, {theta(degrees)}), Vec3(1, 0, 0))
-                                  : slide(scene_of(kTiltedPlane, {theta(degrees)}), downhill(degrees));
-    const double free = 0.5 * expected(degrees, 0.0) * figures.time * figures.time;
-    report(std::string("incline_creep_tilted_") + (gravity ? "gravity" : "plane"), figures.distance / free);
-    EXPECT_LT(std::abs(figures.distance), 1e-3 * free);
+    double worst = 0.0;
+    for (const int degrees : {20, 30, 45}) worst = figures::further(worst, off_the_law(gravity, degrees));
+    Validation row(std::string("block on an incline, ") + (gravity ? "gravity" : "plane") +
+                       " tilted: a = g (sin theta - mu cos theta)",
+                   kSource);
+    row.at_most("a at 20, 30, 45 degrees, off the law at most", 100.0 * worst, 1.0, "%");
+    row.control("mu larger by 3 %, 30 degrees", 100.0 * off_the_law(gravity, 30, 1.03 * kFriction));
   }
 }
 
-TEST(Incline, AboveFrictionAngle_IsNotRest) {
-  const Slide figures = slide(scene_of(kTiltedGravity, {theta(18)}), Vec3(1, 0, 0));  // tan 18 degrees = 0.32
-  EXPECT_GT(figures.distance, 1e-2 * 0.5 * expected(18, 0.0) * figures.time * figures.time);
+/// What it slides by the end, of what it would without friction.
+double creep(bool gravity, int degrees) {
+  const Slide figures =
+      slide(scene_of(gravity ? kTiltedGravity : kTiltedPlane, {theta(degrees)}), slope(gravity, degrees));
+  return std::abs(figures.distance) / (0.5 * expected(degrees, 0.0) * figures.time * figures.time);
 }
 
-TEST(Incline, FrictionOffByThreePercent_IsRejected) {
-  const Slide figures =
-      slide(scene_of(kTiltedGravity, {theta(30), "colliders.floor.friction=0.309"}), Vec3(1, 0, 0));
-  EXPECT_GT(std::abs(figures.acceleration / expected(30, kFriction) - 1.0), 0.01);
+TEST(Validation, BlockBelowTheAngleOfFriction_Rests) {
+  Validation row("block on an incline rests where tan theta < mu", kSource);
+  row.at_most("way at 12 degrees (tan 0.21, mu 0.3), of what slides freely",
+              figures::further(creep(true, 12), creep(false, 12)), 1e-3);
+  row.control("18 degrees (tan 0.32)", creep(true, 18));
 }
 
 }  // namespace

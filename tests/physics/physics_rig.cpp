@@ -97,6 +97,14 @@ bool run_until(Simulation& simulation, double time) {
   return true;
 }
 
+double measured(const Simulation& simulation, const std::string& probe, const std::string& quantity) {
+  for (const Measurement& m : simulation.measurements()) {
+    if (m.probe == probe && m.quantity == quantity) return m.value;
+  }
+  ADD_FAILURE() << probe << '.' << quantity << " is not measured";
+  return std::nan("");
+}
+
 void report(const std::string& name, double value, const std::string& unit) {
   char text[64];
   std::snprintf(text, sizeof text, "%.6g", value);

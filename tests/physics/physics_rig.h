@@ -32,6 +32,9 @@ bool run_steps(Simulation& simulation, int steps);
 bool run_frames(Simulation& simulation, int frames);
 bool run_until(Simulation& simulation, double time);
 
+/// What a probe told of the last frame; not a number, and the test fails, where it tells no such quantity.
+double measured(const Simulation& simulation, const std::string& probe, const std::string& quantity);
+
 /// Prints a figure of merit and keeps it in the test's report.
 void report(const std::string& name, double value, const std::string& unit = "");
 

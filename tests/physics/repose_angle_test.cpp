@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/physics/physics_rig.h"
+#include "tests/physics/validation.h"
 
 namespace repose {
 namespace {
@@ -30,17 +31,13 @@ double slope_change(const std::string& phi) {
   const double start = slope();
   EXPECT_NEAR(start, 30.0, 0.5);
   EXPECT_TRUE(run_until(*simulation, 2.25));
-  const double end = slope();
-  report("cone_slope_phi_" + phi, end, "degrees");
-  return end - start;
+  return slope() - start;
 }
 
-TEST(Repose, ConeOf30DegreesInSandOf35_Holds) {
-  EXPECT_LT(std::abs(slope_change("35")), 2.0);
-}
-
-TEST(Repose, ConeOf30DegreesInSandOf15_Slumps) {
-  EXPECT_LT(slope_change("15"), -6.0);
+TEST(Validation, ConeBelowItsAngleOfFriction_Holds) {
+  Validation row("a heap holds below its angle of friction and slumps above it", "Coulomb 1776");
+  row.within("change of a slope of 30 degrees in 2 s, phi 35", slope_change("35"), -2.0, 2.0, "degrees");
+  row.control("phi 15", slope_change("15"));
 }
 
 }  // namespace
