@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/physics/physics_rig.h"
+#include "tests/physics/validation.h"
 
 namespace repose::battery {
 namespace {
@@ -69,12 +70,6 @@ double plane_runout(const std::string& phi, double& height) {
   return (end - 0.1) / 0.1;
 }
 
-/// What glue is told from.
-void expect_outside(Case& result, const std::string& what, double runout, double low, double high) {
-  report("runout_of_glue", runout);
-  result.holds(what + ": not in the band", runout < low || runout > high);
-}
-
 constexpr double kRoundLow = 0.75, kRoundHigh = 1.35;
 constexpr double kPlaneLow = 0.85 * 2.40, kPlaneHigh = 1.25 * 3.60;
 
@@ -84,25 +79,29 @@ std::string of_aspect(double aspect) {
 
 }  // namespace
 
-void expect_runout_of_round_column(Case& result, double aspect) {
-  result.within("round, " + of_aspect(aspect) + ": run-out over Lube's",
-                axisymmetric_runout(aspect, "30") / lube(aspect), kRoundLow, kRoundHigh);
+void expect_runout_of_round_column(Case& sand, Case& glue, double aspect) {
+  const double found = axisymmetric_runout(aspect, "30") / lube(aspect);
+  const double stuck = axisymmetric_runout(aspect, "65", false) / lube(aspect);
+  const std::string name = "round, " + of_aspect(aspect);
+  sand.within(name + ": run-out over Lube's", found, kRoundLow, kRoundHigh);
+  glue.holds(name + ", 65 degrees: not in the band", stuck < kRoundLow || stuck > kRoundHigh);
+  Validation row("collapse of a round column, " + of_aspect(aspect) +
+                     ": runs 1.24 a below a = 1.7, 1.6 sqrt(a) above, of its radius",
+                 "Lube et al. 2004");
+  row.within("run-out over the law's", found, kRoundLow, kRoundHigh);
+  row.control("phi 65", stuck);
 }
 
-void expect_glue_is_told_from_round_column(Case& result, double aspect) {
-  expect_outside(result, "round, " + of_aspect(aspect) + ", 65 degrees",
-                 axisymmetric_runout(aspect, "65", false) / lube(aspect), kRoundLow, kRoundHigh);
-}
-
-void expect_runout_of_plane_column(Case& result) {
-  double height = 0.0;
-  result.within("plane, a = 2: run-out over the width", plane_runout("30", height), kPlaneLow, kPlaneHigh);
-  result.within("plane, a = 2: height over the width", height, 0.8, 1.7);
-}
-
-void expect_glue_is_told_from_plane_column(Case& result) {
-  double height = 0.0;
-  expect_outside(result, "plane, a = 2, 65 degrees", plane_runout("65", height), kPlaneLow, kPlaneHigh);
+void expect_runout_of_plane_column(Case& sand, Case& glue) {
+  double height = 0.0, height_of_glue = 0.0;
+  const double found = plane_runout("30", height), stuck = plane_runout("65", height_of_glue);
+  sand.within("plane, a = 2: run-out over the width", found, kPlaneLow, kPlaneHigh);
+  sand.within("plane, a = 2: height over the width", height, 0.8, 1.7);
+  glue.holds("plane, a = 2, 65 degrees: not in the band", stuck < kPlaneLow || stuck > kPlaneHigh);
+  Validation row("collapse of a plane column, a = 2: runs 1.2 a to 1.8 a of its length",
+                 "Lube et al. 2005; Lajeunesse et al. 2005");
+  row.within("run-out", found, kPlaneLow, kPlaneHigh);
+  row.control("phi 65", stuck);
 }
 
 }  // namespace repose::battery

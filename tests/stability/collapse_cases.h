@@ -8,9 +8,8 @@
 
 namespace repose::battery {
 
-void expect_runout_of_round_column(Case& result, double aspect);
-void expect_glue_is_told_from_round_column(Case& result, double aspect);
-void expect_runout_of_plane_column(Case& result);
-void expect_glue_is_told_from_plane_column(Case& result);
+/// `glue` is the case that has what sand of 65 degrees comes to.
+void expect_runout_of_round_column(Case& sand, Case& glue, double aspect);
+void expect_runout_of_plane_column(Case& sand, Case& glue);
 
 }  // namespace repose::battery

@@ -26,15 +26,9 @@ TEST(Battery, Case32_ManufacturedBox_ConvergesByTheSecondOrder) {
 }
 
 TEST(Battery, Case33_Column_RunsAsExperimentsSay) {
-  battery::Case result(33, "column collapse");
-  for (const double aspect : {0.5, 1.0, 2.0}) battery::expect_runout_of_round_column(result, aspect);
-  battery::expect_runout_of_plane_column(result);
-}
-
-TEST(Battery, Case33_Glue_IsToldFromSand) {
-  battery::Case result(33, "column collapse, control");
-  for (const double aspect : {0.5, 1.0, 2.0}) battery::expect_glue_is_told_from_round_column(result, aspect);
-  battery::expect_glue_is_told_from_plane_column(result);
+  battery::Case sand(33, "column collapse"), glue(33, "column collapse, control");
+  for (const double aspect : {0.5, 1.0, 2.0}) battery::expect_runout_of_round_column(sand, glue, aspect);
+  battery::expect_runout_of_plane_column(sand, glue);
 }
 
 TEST(Battery, Case34_SlotOfASilo_FlowsByBeverloo) {

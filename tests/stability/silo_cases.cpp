@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/physics/physics_rig.h"
+#include "tests/physics/validation.h"
 
 namespace repose::battery {
 namespace {
@@ -90,25 +91,32 @@ Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
   return {xy / xx, sx / n - sy / n * xx / xy, xy * xy / (xx * yy)};
 }
 
+constexpr const char* kBeverloo = "Beverloo, Leniger and van de Velde 1961";
+
 /// Rates through several openings: their power in the width less what the edges take of it.
 void expect_power(Case& result, const char* text, const std::vector<int>& openings, double power,
                   double tolerance, const std::string& name) {
-  std::vector<double> width, root, log_rate;
+  std::vector<double> width, rates, root, log_rate;
   for (const int cells : openings) {
     const std::vector<double> times = times_of(text, {opening(cells)}, {0.92, 0.80});
     const double rate = 0.12 / (times[1] - times[0]);
     report(name + "_rate_" + std::to_string(cells) + "_cells", rate, "of the fill per second");
     width.push_back(cells);
+    rates.push_back(rate);
     root.push_back(std::pow(rate, 1.0 / power));
     log_rate.push_back(std::log(rate));
   }
-  const Line line = line_through(width, root);
+  const Line line = line_through(width, root), as_of_water = line_through(width, rates);
   std::vector<double> log_width;
   for (const double cells : width) log_width.push_back(std::log(cells - line.zero));
   result.at_least(name + ": root of the rate is linear in the width, R^2", line.explained, 0.995);
   result.within(name + ": what the edges take of the width", line.zero, -2.0, 2.0, "cells");
   result.within(name + ": exponent", line_through(log_width, log_rate).slope, power - tolerance,
                 power + tolerance);
+  Validation row("discharge of a " + name + ": W ~ (D - k)^" + figures::text(power, ""), kBeverloo);
+  row.within("k, where the line through W^(1/" + figures::text(power, "") + ") comes to nothing", line.zero,
+             -2.0, 2.0, "cells");
+  row.control("W linear in D", as_of_water.zero);
 }
 
 /// How much faster the fill flows out in the first than in the last of two windows, as its height halves.
@@ -121,11 +129,14 @@ double change_of_rate(const std::vector<std::string>& overrides) {
 
 void expect_beverloo_of_a_slot(Case& result, const std::vector<int>& openings) {
   expect_power(result, kSlot, openings, 1.5, 0.1, "slot");
-  result.at_most("slot: change of the rate while the fill halves", std::abs(change_of_rate({opening(16)})),
-                 0.03);
+  const double sand = std::abs(change_of_rate({opening(16)}));
   // The control: what hardly rubs flows by the root of its height.
-  result.at_least("slot, sand of 3 degrees: change of the rate",
-                  change_of_rate({opening(16), "parameters.phi=3", "parameters.rough=0"}), 0.06);
+  const double slippery = change_of_rate({opening(16), "parameters.phi=3", "parameters.rough=0"});
+  result.at_most("slot: change of the rate while the fill halves", sand, 0.03);
+  result.at_least("slot, sand of 3 degrees: change of the rate", slippery, 0.06);
+  Validation row("discharge of a slot: the same whatever the fill's height", kBeverloo);
+  row.at_most("change of the rate while the fill halves", 100.0 * sand, 3.0, "%");
+  row.control("phi 3, smooth walls", 100.0 * slippery);
 }
 
 void expect_beverloo_of_a_hole(Case& result, const std::vector<int>& openings) {
