@@ -130,7 +130,8 @@ def of_case(program, case, no_timer, caches):
                       ("blocks", "blocks"), ("sorts", "sorts")):
         figures[name] = ("exact", round(have[key], 6))
     figures["time reached, s"] = ("exact", have["time"])
-    figures["peak memory, bytes"] = ("memory", have["peak_rss_bytes"])
+    if caches:  # of the whole gate alone, too: how much of a library lies in memory is the machine's affair
+        figures["peak memory, bytes"] = ("memory", have["peak_rss_bytes"])
     if case.quick:
         count = [allocations(program, case, steps, no_timer) for steps in (case.few, case.more)]
         per_step_made = round((count[1] - count[0]) / (case.more - case.few))  # one or two of a run are its report's

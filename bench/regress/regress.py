@@ -81,7 +81,7 @@ def main():
     of_gate.add_argument("--quick", action="store_true")
     only = {"default": [], "type": lambda names: names.split(","), "metavar": "CASE,..."}
     of_gate.add_argument("--only", **only, help="these cases; or output, or study NAME")
-    of_gate.add_argument("--no-caches", dest="caches", action="store_false", help="all but misses and branches")
+    of_gate.add_argument("--no-caches", dest="caches", action="store_false", help="all but misses, branches and peak memory")
     of_gate.add_argument("--accept", default="", metavar="REASON")
     of_gate.add_argument("--report", default="", metavar="FOLDER")
     of_gate.add_argument("--jobs", type=int, default=os.cpu_count())

@@ -42,7 +42,7 @@ void ImplicitStep<Real>::reserve() {
 }
 
 template <class Real>
-ImplicitReport ImplicitStep<Real>::solve() {
+ImplicitReport ImplicitStep<Real>::solve(bool last) {
   const PhaseTimer timer(profile_, Phase::kNewton);
   sweep_.begin();
   const State<Real>& state = sweep_.state();
@@ -56,6 +56,7 @@ ImplicitReport ImplicitStep<Real>::solve() {
   NewtonStop stop;
   stop.iterations = static_cast<int>(settings.newton_iterations);
   stop.tolerance = settings.tolerance;
+  stop.last = last;
   stop.interrupted = [this] { return sweep_.interrupted(); };
   linear_ = SolveStatus::kConverged;
   report.newton = Newton<ImplicitStep>(*this, v_, step_, trial_, stop).solve(norm);

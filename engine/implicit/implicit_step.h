@@ -23,8 +23,8 @@ class ImplicitStep {
 
   /// Solves the step of the sweep from its state's nodes, which hold mass and v^free, and `before_forces`, with
   /// v^n. If a solution is found, nodes hold v, `after_friction` what friction leaves where that follows the
-  /// solve, and the contact log what contacts did.
-  ImplicitReport solve();
+  /// solve, and the contact log what contacts did. `last`: a step that is refused is not tried by half again.
+  ImplicitReport solve(bool last);
   /// The step that was solved last is made: the next begins from what it came to.
   void accept() { guess_.keep(v_); }
 

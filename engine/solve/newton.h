@@ -42,6 +42,7 @@ namespace repose {
 struct NewtonStop {
   double tolerance = 0.0;  ///< of |r|, over the problem's scale
   int iterations = 40;
+  bool last = false;  ///< nobody will try again: what is nearly solved when iterations end is better than nothing
   std::function<bool()> interrupted{};  ///< asked in every iteration: whether to give up
 };
 
@@ -91,7 +92,8 @@ class Newton {
   bool early() const { return 2 * report_.iterations <= stop_.iterations; }
 
   NewtonReport end(NewtonEnd how) {
-    const bool found = how == NewtonEnd::kNoDescent || how == NewtonEnd::kUnsolved;
+    const bool found = how == NewtonEnd::kNoDescent || how == NewtonEnd::kUnsolved ||
+                       (how == NewtonEnd::kIterations && stop_.last);
     report_.end = found && report_.last <= kNearly * tolerance() ? NewtonEnd::kStalled : how;
     report_.tolerance = tolerance();
     if (report_.end == NewtonEnd::kStalled) problem_.evaluate(v_);  // the last was a length that was refused

@@ -173,7 +173,7 @@ void Stepper<Real>::update_nodes() {
 /// Solves for the nodes' velocities. Returns whether a solution was found.
 template <class Real>
 bool Stepper<Real>::solve(StepReport& report) {
-  report.implicit = implicit_->solve();
+  report.implicit = implicit_->solve(report.redone == kMostHalvings);
   if (!solved(report.implicit->newton.end)) {
     report.refuse(unsolved_text(*report.implicit));
     if (report.implicit->newton.end == NewtonEnd::kUndefined) report.failed = spoilt_particle(sweep_.state());
