@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the tests.
-#   bash tests/run.sh                      every test but the long ones, then the quick gate of bench/regress.sh
+#   bash tests/run.sh                      every test but the long ones
 #   bash tests/run.sh --all [PART]         the long ones too: all of them, or one part of them alone:
 #                                          stability, sanitizers, consumers, fuzz, rest; or, which is no part of
 #                                          all since it builds the engine over and over, breaks: whether each hard
@@ -76,22 +76,9 @@ if [ -n "$table" ]; then
   python3 tests/table.py "$table" "build/$preset" ${page:+--page "$page"}
   exit
 fi
-# What a step takes, against what was accepted (bench/regress.sh): every test run asks it. A machine that cannot count,
-# without AVX2 or without valgrind, is told so and passes.
-gate() {
-  [ "$preset" = release ] || return 0
-  local code=0
-  bash bench/regress.sh --quick || code=$?
-  case $code in
-    0) ;;
-    2) echo "regress: not measured; the tests have passed" >&2 ;;
-    *) exit "$code" ;;
-  esac
-}
-
 # Physics tests use every core by themselves: they run one at a time, the rest side by side.
 case "$part" in
-  "") if $all; then run "$preset"; sanitizers; else run "$preset" -LE long; gate; fi ;;
+  "") if $all; then run "$preset"; sanitizers; else run "$preset" -LE long; fi ;;
   stability) run "$preset" -L stability ;;
   consumers) run "$preset" -L consumers ;;
   fuzz) run "$preset" -L fuzz ;;

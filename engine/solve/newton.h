@@ -42,7 +42,8 @@ namespace repose {
 struct NewtonStop {
   double tolerance = 0.0;  ///< of |r|, over the problem's scale
   int iterations = 40;
-  bool last = false;  ///< nobody will try again: what is nearly solved when iterations end is better than nothing
+  bool last =
+      false;  ///< nobody will try again: what is nearly solved when iterations end is better than nothing
   std::function<bool()> interrupted{};  ///< asked in every iteration: whether to give up
 };
 
