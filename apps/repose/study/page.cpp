@@ -171,11 +171,8 @@ std::string Page::row(std::size_t k) const {
     if (written) value = report_.head.written[v].empty() ? "default" : report_.head.written[v];
     html += cell(written ? "" : value, value, "word", written ? value : "");
   }
-  const std::string state = !p.refused.empty() ? "refused"
-                            : !p.made()        ? "not made yet"
-                            : p.gave_out == 0
-                                ? "complete"
-                                : std::to_string(p.gave_out) + " of " + std::to_string(p.runs) + " gave out";
+  const std::string state =
+      p.gave_out > 0 ? std::to_string(p.gave_out) + " of " + std::to_string(p.runs) + " gave out" : p.state();
   if (any_incomplete()) html += bad || !p.made() ? cell(state, state, "word") : cell("", state, "word", state);
   const std::string spread = p.seconds.high > p.seconds.low
                                  ? short_number(p.seconds.low) + "\u2013" + short_number(p.seconds.high)

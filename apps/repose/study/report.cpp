@@ -33,11 +33,7 @@ Json::Value figure_json(const Figure& figure, const PointFigure& of) {
 Json::Value point_json(const StudyPlan& plan, const PointSummary& point) {
   Json::Value json;
   json["settings"] = settings_json(point.point);
-  json["state"] = !point.refused.empty() ? "refused"
-                  : !point.made()        ? "not made yet"
-                  : point.gave_out == 0  ? "complete"
-                  : point.whole()        ? "gave out in part"
-                                         : "gave out";
+  json["state"] = point.state();
   json["words"] = point.refused.empty() ? point.words : point.refused;
   json["code"] = point.refused.empty() ? point.code : static_cast<int>(ErrorKind::kBadScene);
   json["runs"] = Json::UInt64(point.runs);

@@ -60,6 +60,12 @@ struct PointSummary {
   bool whole() const { return runs > gave_out; }
   /// Or it waits for a study that was interrupted to go on.
   bool made() const { return runs > 0 || !refused.empty(); }
+  /// In a word or two.
+  const char* state() const {
+    if (!refused.empty()) return "refused";
+    if (!made()) return "not made yet";
+    return gave_out == 0 ? "complete" : whole() ? "gave out in part" : "gave out";
+  }
 };
 
 /// What a figure is compared with.
