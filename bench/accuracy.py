@@ -10,6 +10,9 @@ import re
 import subprocess
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests"))
+from marked_page import replace_between
+
 HEADER = "engine/base/accuracy.h"
 BEGIN, END = "    // accuracy: begin\n", "    // accuracy: end\n"
 MARGIN = 4  # what is told may be so many times what is measured
@@ -59,11 +62,7 @@ def rows(paths):
         else:
             kept.append((cells, error))
     table = "".join(f"    {{{cells:.1f}, {error:.3f}}},\n" for cells, error in kept)
-    with open(HEADER) as text:
-        content = text.read()
-    head, rest = content.split(BEGIN)
-    with open(HEADER, "w") as text:
-        text.write(head + BEGIN + table + END + rest.split(END)[1])
+    replace_between(HEADER, BEGIN, END, table)
     print(table, end="")
     return 0
 

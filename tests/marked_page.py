@@ -4,13 +4,18 @@ import pathlib
 import sys
 
 
+def replace_between(path, begin, end, text):
+    """Of a file; the marks and all else stay."""
+    path = pathlib.Path(path)
+    content = path.read_text()
+    if begin not in content or end not in content:
+        sys.exit(f"{path}: has no lines {begin} and {end}")
+    path.write_text(content[:content.index(begin) + len(begin)] + text + content[content.index(end):])
+
+
 def put_between(page, begin, end, lines):
-    """Replaces what stands between two marks, each a line of the page; all else stays."""
-    page = pathlib.Path(page)
-    text = page.read_text()
-    if begin not in text or end not in text:
-        sys.exit(f"{page}: has no lines {begin} and {end}")
-    page.write_text(text[:text.index(begin)] + "\n".join([begin, "", *lines, "", end]) + text[text.index(end) + len(end):])
+    """Of a page of Markdown, which wants empty lines about a table."""
+    replace_between(page, begin, end, "\n".join(["", "", *lines, "", ""]))
 
 
 def table(head, rows):

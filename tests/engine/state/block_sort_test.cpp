@@ -250,17 +250,21 @@ TEST(BlockSort, OccupiedBlocksComeAndGo_GridFollows) {
   expect_ordered(state);
 }
 
+void expect_drift_is_ordered(State<float>& state) {
+  order(state);
+  drift(state, 1);
+  const auto before = places(state);
+  order(state);
+  expect_ordered(state);
+  expect_same_places(state, before);
+}
+
 TEST(BlockSort, DriftAcrossASeam_FallsOnTheOtherSide) {
   for (const std::int32_t blocks : {2, 6}) {
     Making making;
     making.topology = {-1, {-1, 0, 0}, {blocks, 0, 0}};
     State<float> state = make_state(making);
-    order(state);
-    drift(state, 1);
-    const auto before = places(state);
-    order(state);
-    expect_ordered(state);
-    expect_same_places(state, before);
+    expect_drift_is_ordered(state);
     for (const Index3& block : state.grid.blocks())
       EXPECT_TRUE(block[0] >= -1 && block[0] < blocks - 1) << block[0];
   }
@@ -270,12 +274,7 @@ TEST(BlockSort, FlatAxis_StaysInOneLayer) {
   Making making;
   making.topology.flat_axis = 1;
   State<float> state = make_state(making);
-  order(state);
-  drift(state, 1);
-  const auto before = places(state);
-  order(state);
-  expect_ordered(state);
-  expect_same_places(state, before);
+  expect_drift_is_ordered(state);
   for (const Index3& block : state.grid.blocks()) EXPECT_EQ(block[1], 0);
 }
 
