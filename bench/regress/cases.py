@@ -46,6 +46,8 @@ CASES = [
     Case("prestress", ("prestress", [{"body": "column"}])),
     Case("sleep", ("sleep", {})),
     Case("age", ("age", {})),
+    Case("plastic_strain", ("plastic_strain", {})),
+    Case("channels", ("channels", [{"name": "Cd", "components": 3}])),
     Case("pins", ("pins", [{"name": "foot", "shape": {"type": "box", "lower": [0, 0, 0], "upper": [1, 0.07, 1]}}])),
     Case("force_fields", ("force_fields", [{"name": "wind", "type": "wind", "velocity": [1, 0, 0], "shape": EVERYWHERE}])),
     Case("emitters and sinks",

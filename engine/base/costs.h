@@ -28,6 +28,8 @@ inline constexpr Cost kCosts[] = {
     {"prestress", 0.3},
     {"manufactured", 76.5},
     {"age", 0.0},
+    {"density_correction", 2.9},
+    {"plastic_strain", 0.8},
     {"volume_correction", 0.4},
     {"hardening", 1.2},
     {"cohesion", 0.9},
