@@ -9,7 +9,7 @@ packages=(g++ cmake ninja-build pkg-config ccache libopenvdb-dev libboost-iostre
 if [ "${1:-}" = "--tests" ] || [ "${1:-}" = "--all" ]; then
   packages+=(libgtest-dev libgmock-dev libbenchmark-dev libopenvdb-tools python3 python3-meshio python3-vtk9
              pybind11-dev python3-pybind11 python3-dev python3-numpy abigail-tools doxygen)
-  optional+=(chromium-headless-shell)
+  optional+=(chromium-headless-shell valgrind)
 fi
 [ "${1:-}" = "--all" ] && packages+=(valgrind dpkg-dev file lintian)
 

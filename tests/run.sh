@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs the tests.
+# Installs what is missing, builds, runs the tests, and counts what steps take (bench/regress.sh --quick).
 #   bash tests/run.sh                      every test but the long ones
 #   bash tests/run.sh --all [PART]         the long ones too: all of them, or one part of them alone:
 #                                          stability, sanitizers, consumers, fuzz, rest; or, which is no part of
@@ -64,6 +64,16 @@ sanitizers() {
   run tsan -L unit -R 'Kernel|Scatter|Gather|BlockSort|State|ParticleEdit|Stepper|StepPlan|Determinism'
 }
 
+# What a step takes must not have grown. Counts repeat on any machine, of this preset's programs.
+gate() {
+  [ "$preset" = release ] || return 0
+  if ! command -v valgrind >/dev/null || ! grep -qw avx2 /proc/cpuinfo; then
+    echo "what a step takes is not compared: that needs valgrind, and AVX2"
+    return 0
+  fi
+  bash bench/regress.sh --quick
+}
+
 case "$part" in
   sanitizers) sanitizers; exit ;;
   breaks) exec python3 tests/stability/breaks.py --jobs "$jobs" ;;
@@ -78,7 +88,7 @@ if [ -n "$table" ]; then
 fi
 # Physics tests use every core by themselves: they run one at a time, the rest side by side.
 case "$part" in
-  "") if $all; then run "$preset"; sanitizers; else run "$preset" -LE long; fi ;;
+  "") if $all; then run "$preset"; gate; sanitizers; else run "$preset" -LE long; gate; fi ;;
   stability) run "$preset" -L stability ;;
   consumers) run "$preset" -L consumers ;;
   fuzz) run "$preset" -L fuzz ;;

@@ -3,6 +3,7 @@
 // what has come since. It changes nothing, and is no part of the state: after a load it begins anew.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,8 +23,8 @@ class EnergyWatch {
 
   /// Before a step: where it has not begun to watch, it does.
   void begin(const State<Real>& state, Threads& threads);
-  /// After an accepted step; `ends_frame`: then it looks somewhat sooner. Notes in the report what it saw, and
-  /// an alarm when there is more energy than there can be, once.
+  /// After an accepted step. Where it looks it notes in the report what it saw, and an alarm when there is more
+  /// energy than there can be, once.
   void after_step(const State<Real>& state, Threads& threads, bool ends_frame, StepReport& report);
   void forget() { watching_ = false; }
 
@@ -43,6 +44,7 @@ class EnergyWatch {
     void add(const Sums& other);
   };
 
+  bool due(bool ends_frame) const;
   Sums look(const State<Real>& state, Threads& threads);
   void sum_block(const State<Real>& state, std::size_t occupied, Sums& sums) const;
   double given_since(const State<Real>& state, const Sums& now) const;
@@ -53,6 +55,7 @@ class EnergyWatch {
   std::vector<Sums> blocks_;  // per occupied block
   bool watching_ = false, told_ = false;
   int steps_ = 0;              // since the last look
+  std::int64_t watched_ = 0;   // steps since it began to watch
   double work_ = 0.0;          // of solids since then, J
   Sums last_;                  // at the last look
   double time_ = 0.0;          // then, s

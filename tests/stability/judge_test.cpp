@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "tests/stability/child.h"
@@ -35,6 +36,17 @@ TEST(Judge, WorkThatNobodyTells_IsEnergyFromNowhere) {
                                  {});
   EXPECT_EQ(result.end, Judgement::End::kFault);
   EXPECT_NE(result.why.find("energy from nowhere"), std::string::npos) << result.why;
+}
+
+/// Of a press whose walls stick, which gains at steps of this length (docs/stability.md, known faults).
+TEST(Judge, EnergyFromNowhereThatTheEngineTellsOf_IsTold) {
+  std::ifstream file(REPOSE_SCENES "/../../tests/stability/faults/press_sticky.json");
+  const std::string scene{std::istreambuf_iterator<char>(file), {}};
+  const Judgement result = judge(scene, {});
+  EXPECT_EQ(result.end, Judgement::End::kTold) << result.why;
+  std::string silent = scene;
+  silent.replace(silent.find("\"time\": {"), 9, "\"time\": {\"energy_alarm\": \"off\", ");
+  EXPECT_EQ(judge(silent, {}).end, Judgement::End::kFault);
 }
 
 TEST(Judge, SolidThatPushes_IsAccountedFor) {

@@ -1,8 +1,8 @@
 // Repose tests: random scenes, each in a process of its own. None may crash, hang, show a value that is not
-// finite, lose a particle, make energy from nowhere, or be refused without saying why.
+// finite, lose a particle, make energy from nowhere without a word, or be refused without saying why.
 //   random_scenes --seed N --count N [--seconds-each S] [--most-cells N] [--keep FOLDER] [--only N] [--list]
 //   random_scenes --scene FILE [--seconds-each S]
-// A line for each scene that fails, then a summary; the exit code is 1 if any failed.
+// A line for each scene that fails or gains energy, then a summary; the exit code is 1 if any failed.
 #include <signal.h>
 
 #include <atomic>
@@ -109,16 +109,16 @@ int run_all(const Options& options) {
     ++ends[told.kind];
     steps += told.steps;
     if (told.energy >= 0.0) ++judged;
-    if (told.energy >= 0.0 && told.kind != "FAULT") largest = std::max(largest, told.energy);
+    const bool failed = told.kind == "FAULT", gained = told.kind == end_name(Judgement::End::kTold);
+    if (told.energy >= 0.0 && !failed && !gained) largest = std::max(largest, told.energy);
     if (made.spoilt && told.steps > 0) ++spoilt_and_ran;
-    const bool failed = told.kind == "FAULT";
-    if (failed || options.list || options.only_one) {
+    if (failed || gained || options.list || options.only_one) {
       std::printf("seed %llu scene %llu: %s:%s (%ld steps, energy %.3g of what is allowed)\n",
                   static_cast<unsigned long long>(options.seed), static_cast<unsigned long long>(n),
                   told.kind.c_str(), told.why.c_str(), told.steps, told.energy);
       std::fflush(stdout);
     }
-    if (!options.keep.empty() && (failed || options.only_one)) {
+    if (!options.keep.empty() && (failed || gained || options.only_one)) {
       std::filesystem::create_directories(options.keep);
       const std::string name = "seed" + std::to_string(options.seed) + "_scene" + std::to_string(n) + ".json";
       std::ofstream(std::filesystem::path(options.keep) / name) << made.text << '\n';

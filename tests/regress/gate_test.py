@@ -1,0 +1,116 @@
+"""What the gate says of figures that it is given: gate_test.py; the figures themselves are measured by bench/regress.sh."""
+import contextlib
+import io
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench/regress"))
+import baselines
+import measure
+import regress
+
+BARE = {"bare: instructions per step": ("count", 1000000), "bare: heap allocations per step": ("exact", 0),
+        "bare: first-level misses per step": ("misses", 1000), "study bar: period": ("value", 2.0),
+        "study bar: damping": ("error", 0.1)}
+FUNCTIONS = {"bare": {"scatter": 600000, "gather": 399000, "seldom": 1000}}
+
+
+class Gate(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.where = os.path.join(self.folder.name, "baselines")
+
+    def call(self, figures=None, functions=None, *words):
+        """Exit code and text of a run that measures these."""
+        told = io.StringIO()
+        command = ["regress", "gate", "program", "--no-timer", "library", "--baselines", self.where, *words]
+        made = ({**BARE, **(figures or {})}, functions or FUNCTIONS, {})
+        with unittest.mock.patch.object(regress, "measure_all", return_value=made), \
+                unittest.mock.patch.object(sys, "argv", command), \
+                contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+            return regress.main(), told.getvalue()
+
+    def accept(self, *, figures=None, functions=None, reason="first"):
+        code, told = self.call(figures, functions, "--accept", reason)
+        self.assertEqual(code, 0, told)
+
+    def test_nothing_was_accepted(self):
+        code, told = self.call()
+        self.assertEqual(code, 2)
+        self.assertIn("--accept", told)
+
+    def test_the_same_again(self):
+        self.accept()
+        code, told = self.call()
+        self.assertEqual(code, 0, told)
+        self.assertRegex(told, r"(\d+) of \1 figures as before")
+
+    def test_what_is_worse(self):
+        self.accept()
+        for figure, worse, fine in (("bare: instructions per step", ("count", 1002100), ("count", 1001900)),
+                                    ("bare: heap allocations per step", ("exact", 1), ("exact", 0)),
+                                    ("bare: first-level misses per step", ("misses", 1011), ("misses", 1009)),
+                                    ("study bar: period", ("value", 1.97), ("value", 1.985)),
+                                    ("study bar: damping", ("error", 0.103), ("error", 0.05))):
+            with self.subTest(figure):
+                code, told = self.call({figure: worse})
+                self.assertEqual(code, 1)
+                self.assertRegex(told, "(?m)^worse +" + figure)
+                self.assertEqual(self.call({figure: fine})[0], 0)
+
+    def test_a_function_that_grew_hides_in_no_whole(self):
+        self.accept()
+        code, told = self.call(functions={"bare": {"scatter": 593000, "gather": 406000, "seldom": 1000}})
+        self.assertEqual(code, 1)
+        self.assertRegex(told, r"(?m)^worse +bare: instructions of gather.*\+1\.75 %")
+        seldom = {"bare": {"scatter": 600000, "gather": 399000, "seldom": 2000}}
+        self.assertEqual(self.call(functions=seldom)[0], 0)
+
+    def test_figures_that_are_new_or_gone(self):
+        self.accept(figures={"bare: blocks": ("exact", 7)})
+        code, told = self.call({"bare: sorts": ("exact", 1)})
+        self.assertEqual(code, 1)
+        self.assertRegex(told, "(?m)^gone +bare: blocks")
+        self.assertRegex(told, "(?m)^new +bare: sorts")
+
+    def test_the_log_keeps_every_reason(self):
+        self.accept()
+        self.accept(figures={"bare: instructions per step": ("count", 900000)}, reason="weights stay in registers")
+        log = pathlib.Path(self.where, "log.md").read_text()
+        self.assertIn(": first\n", log)
+        self.assertIn("weights stay in registers\n\n- bare: instructions per step: 1000000 -> 900000 (-10.00 %)", log)
+        self.assertEqual([value for _, value in baselines.read_history(self.where)["bare: instructions per step"]],
+                         ["1000000", "900000"])
+
+    def test_history_says_how_far(self):
+        count = lambda *changes: baselines.allowed(baselines.Figure("count", "1", list(changes)))
+        self.assertEqual(count(), 0.002)
+        self.assertEqual(count(1e-4, 1e-4, 1e-4, 1e-4), 0.002)
+        self.assertAlmostEqual(count(0.0010, 0.0015, 0.0020, 0.0025), 0.002375 + 3 * 0.00125)  # quartiles
+        self.assertEqual(count(0.01, 0.02, 0.03, 0.04), 0.01)
+        self.assertEqual(baselines.allowed(baselines.Figure("exact", "1", [1.0] * 9)), 0.0)
+
+
+class Callgrind(unittest.TestCase):
+    def test_what_is_called_counts_for_itself(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".callgrind") as file:
+            file.write("events: Ir Bc\n\nfl=(1) pass.cpp\nfn=(1) repose::scatter(int)\n10 5 1\n+2 7 2\n"
+                       "cfn=(2) inner\ncalls=3 40\n* 900 9\n* 1 0\n\nfn=(2)\n40 300 3\n")
+            file.flush()
+            functions, lines = measure.read_callgrind(file.name)
+        self.assertEqual(functions["scatter(int)"], {"Ir": 13, "Bc": 3})
+        self.assertEqual(functions["inner"], {"Ir": 300, "Bc": 3})
+        self.assertEqual(lines["pass.cpp:12 in scatter(int)"]["Ir"], 8)
+
+    def test_only_what_steps_took(self):
+        self.assertEqual(measure.per_step({"scatter": {"Ir": 1300}, "once": {"Ir": 50}},
+                                          {"scatter": {"Ir": 500}, "once": {"Ir": 50}}, 8), {"scatter": {"Ir": 100}})
+
+
+if __name__ == "__main__":
+    unittest.main()
