@@ -1,6 +1,6 @@
-# What `cmake --install` brings where, in three components: runtime (the shared library, and the program that reads
+# What `cmake --install` brings where, in components: runtime (the shared library, and the program that reads
 # VDB files for it), development (headers, the static library, CMake package, pkg-config) and tools (the command with
-# its scenes); and the Debian packages of them that `cpack` makes.
+# its scenes), and where it is built python (the module); and the Debian packages of them that `cpack` makes.
 include(CMakePackageConfigHelpers)
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/repose")
@@ -82,6 +82,17 @@ if(REPOSE_COMMAND)
   set(CPACK_DEBIAN_TOOLS_DESCRIPTION "sand by the Material Point Method, command
 The command that runs, checks, measures and films scenes, with scenes to
 begin with.")
+endif()
+
+if(REPOSE_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-repose)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3, python3-numpy, ${soname} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "sand by the Material Point Method, module for Python
+Repose within Python: scenes, steps, and what particles hold as arrays of
+numpy.")
 endif()
 
 # What Debian wants beside each package.

@@ -91,7 +91,7 @@ std::optional<FailedParticle> spoilt_particle(const State<Real>& state) {
     if (finite) return;
     found = particle_at(state, set, occupied, p);
     found->reason = "has a value that is not finite";
-    found->advice = "go on from an earlier checkpoint";
+    found->advice = "go on from an earlier checkpoint, with a smaller time.sound or a finer grid.spacing";
   });
   return found;
 }

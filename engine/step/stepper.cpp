@@ -66,8 +66,9 @@ StepReport Stepper<Real>::step(State<Real>& state, double remaining) {
   report.limit = size.limit;
   report.dt = size.dt;
   if (const std::string why = endless(size, remaining, plan_.limits.max_step); !why.empty()) {
-    report.failed = fastest_particle(
-        state, why, "look for a solid, an emitter or a force that drives it, and for a floor that is missing");
+    report.failed = fastest_particle(state, why,
+                                     "look in \"colliders\", \"emitters\" and \"force_fields\" for what drives "
+                                     "it, and for a floor that is missing");
     return report;
   }
   energy_.begin(state, threads_);

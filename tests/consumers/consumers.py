@@ -1,11 +1,11 @@
 # Builds and runs what a user of the library would: outside the tree, against what `cmake --install` or a Debian
 # package brings, or with the tree as a part of the project.
 #   consumers.py PART --build DIR --source DIR --cmake CMAKE --command REPOSE
-# Parts: shared, static, fetch, deb, python, guide.
+# Parts: shared, static, fetch, deb, python, pip, guide.
 import argparse, glob, json, os, re, shutil, subprocess, sys, tempfile
 
 parser = argparse.ArgumentParser()
-parser.add_argument("part", choices=["shared", "static", "fetch", "deb", "python", "guide"])
+parser.add_argument("part", choices=["shared", "static", "fetch", "deb", "python", "pip", "guide"])
 for name in ("build", "source", "cmake", "command"):
     parser.add_argument(f"--{name}", required=True)
 args = parser.parse_args()
@@ -151,21 +151,58 @@ def python(folder):
     run([args.cmake, "--install", build])
     where = {**os.environ, "PYTHONPATH": os.path.join(prefix, "lib/python3/dist-packages"),
              "LD_LIBRARY_PATH": os.path.join(prefix, "lib")}
-    print(run([PYTHON, os.path.join(args.source, "tests", "consumers", "module_test.py")], env=where).strip())
+    check_module([PYTHON], folder, where)
+
+
+def check_module(interpreter, folder, where):
+    """`interpreter`, then a file of Python."""
+    print(run([*interpreter, os.path.join(args.source, "tests", "consumers", "module_test.py")], env=where).strip())
     scene = small_scene(folder)
     expected = hash_of_command(scene, folder)
-    found = hash_of([PYTHON, os.path.join(EXAMPLES, "frames.py"), scene, str(FRAMES)], env=where)
+    found = hash_of([*interpreter, os.path.join(EXAMPLES, "frames.py"), scene, str(FRAMES)], env=where)
     print(f"frames.py: {found}, the command: {expected}")
     if found != expected:
         sys.exit("the hashes differ")
 
 
+def pip(folder):
+    """Built by pip, used by Python and, where it is installed, by the Python of Blender; and gone when uninstalled."""
+    to = os.path.join(folder, "modules")
+    source = os.path.join(folder, "source")
+    shutil.copytree(args.source, source, ignore=shutil.ignore_patterns("build", "out", ".git", "*.egg-info"))
+    run([PYTHON, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--no-index", "--target", to, source])
+    where = {**os.environ, "PYTHONPATH": to}
+    check_module([PYTHON], folder, where)
+    blender = shutil.which("blender")
+    if not blender:
+        print("there is no Blender: not tried in its Python")
+        return
+    script = os.path.join(folder, "in_blender.py")
+    with open(script, "w") as file:
+        file.write("import sys\n" f"sys.path.insert(0, {to!r})\n"
+                   "sys.argv = sys.argv[sys.argv.index('--'):]\n"
+                   f"exec(compile(open({os.path.join(EXAMPLES, 'frames.py')!r}).read(), 'frames.py', 'exec'))\n")
+    scene = small_scene(folder)
+    found = hash_of([blender, "--background", "--factory-startup", "--python-exit-code", "1", "--python", script, "--",
+                     scene, str(FRAMES)], env={**os.environ, "PATH": "/usr/bin:/bin"})  # where Debian's Python is found first
+    expected = hash_of_command(scene, folder)
+    print(f"in Blender: {found}, the command: {expected}")
+    if found != expected:
+        sys.exit("the hashes differ")
+
+
 def deb(folder):
-    run(["cpack", "-B", folder], cwd=args.build)
+    with_module = [args.cmake, "-S", args.source, "-B", args.build]
+    run([*with_module, "-DREPOSE_PYTHON=ON", f"-DPYTHON_EXECUTABLE={PYTHON}"])
+    try:
+        run([args.cmake, "--build", args.build, "-j", "2"])
+        run(["cpack", "-B", folder], cwd=args.build)
+    finally:
+        run([*with_module, "-DREPOSE_PYTHON=OFF"])
     packages = sorted(glob.glob(os.path.join(folder, "*.deb")))
     names = [run(["dpkg-deb", "-f", package, "Package"]).strip() for package in packages]
     print(", ".join(os.path.basename(package) for package in packages))
-    if not {"librepose0", "librepose-dev", "repose"} <= set(names):
+    if not {"librepose0", "librepose-dev", "repose", "python3-repose"} <= set(names):
         sys.exit(f"packages are missing: {names}")
     depends = run(["dpkg-deb", "-f", packages[names.index("librepose0")], "Depends"])
     if "libopenvdb" not in depends or "libtbb" not in depends:
@@ -187,6 +224,8 @@ def deb(folder):
     build = os.path.join(folder, "build")
     configure_and_build(EXAMPLES, build, f"-DCMAKE_PREFIX_PATH={root}/usr")
     check_hashes([os.path.join(build, "frames")], folder)
+    check_module([PYTHON], folder, {**os.environ, "PYTHONPATH": os.path.join(root, "usr/lib/python3/dist-packages"),
+                                    "LD_LIBRARY_PATH": os.path.join(root, "usr/lib")})
     run(dpkg + ["-P", *names])
     left = [os.path.join(at, name) for at, _, all_names in os.walk(os.path.join(root, "usr")) for name in all_names]
     if left:
