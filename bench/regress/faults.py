@@ -45,7 +45,7 @@ class Gate:
     def of_fault(self, fault):
         if fault.paired:
             return self.call("ab", self.good, self.program, "--only", fault.cases)
-        return self.measure("--only", fault.cases)
+        return self.measure("--only", fault.cases, "--no-caches")  # no fault is told by caches alone
 
 
 def build(copy, log):

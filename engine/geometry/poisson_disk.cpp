@@ -53,8 +53,7 @@ class Sampler {
 
   const std::vector<Point>& fill() {
     grid_.assign(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]), -1);
-    box_.for_each_cell([&](const Index3& cell) {
-      if (shape_.signed_distance(box_.middle(cell)) >= box_.cell_radius()) return;
+    box_.for_each_cell_near(shape_, [&](const Index3& cell, double) {
       Point dart;
       for (int k = 0; k < 3; ++k) dart[k] = on_lattice(k, cell[k] - box_.lower[k] + random_.unit());
       if (fits(dart)) spread_from(dart);

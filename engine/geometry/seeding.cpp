@@ -67,9 +67,7 @@ Seeds seed_jittered(const Shape& shape, const CellBox& box, const SeedOptions& o
   seeds.cell.reserve(room);
   seeds.offset.reserve(room);
   const auto cuts = sub_cells(options.particles_per_cell, box);
-  box.for_each_cell([&](const Index3& cell) {
-    const double distance = shape.signed_distance(box.middle(cell));
-    if (distance >= box.cell_radius()) return;
+  box.for_each_cell_near(shape, [&](const Index3& cell, double distance) {
     const bool whole = distance < -box.cell_radius();
     const std::uint64_t key = cell_key(options.seed, cell);
     for (std::int64_t s = 0; s < options.particles_per_cell; ++s) {

@@ -195,6 +195,42 @@ TEST(Seeding, PoissonDisk_IsOrderedByCell) {
   EXPECT_TRUE(std::is_sorted(seeds.cell.begin(), seeds.cell.end()));
 }
 
+/// Counts how often it is asked.
+class Asked : public Shape {
+ public:
+  explicit Asked(std::shared_ptr<const Shape> of) : of_(std::move(of)) {}
+  double signed_distance(const Vec3& x) const override {
+    ++times;
+    return of_->signed_distance(x);
+  }
+  Bounds bounds() const override { return of_->bounds(); }
+  double volume() const override { return of_->volume(); }
+  Result<double> section_area(int axis) const override { return of_->section_area(axis); }
+  TriangleMesh surface(double extent) const override { return of_->surface(extent); }
+
+  mutable std::size_t times = 0;
+
+ private:
+  std::shared_ptr<const Shape> of_;
+};
+
+TEST(Seeding, RodAcrossItsBox_IsNotLookedForEverywhere) {
+  ShapeDescription rod;
+  rod.type = ShapeDescription::Type::kCylinder;
+  rod.axis = {1, 1, 1};
+  rod.radius = 0.3;
+  rod.height = 30;
+  for (const Sampling sampling : {Sampling::kJittered, Sampling::kPoissonDisk}) {
+    const Asked shape(built(rod));
+    const auto seeds = seed_shape(shape, options(0.1, 4, sampling));
+    ASSERT_TRUE(seeds) << seeds.error().text();
+    EXPECT_NEAR(static_cast<double>(seeds->cell.size()) / (shape.volume() / 1e-3 * 4), 1, 0.08);
+    const Vec3 cells = (shape.bounds().upper - shape.bounds().lower) / 0.1;
+    const double others = static_cast<double>(shape.times) - 100.0 * static_cast<double>(seeds->cell.size());
+    EXPECT_LT(others, 0.15 * cells.prod());
+  }
+}
+
 TEST(Seeding, PlaneStrain_LiesInTheFlatCell) {
   for (const Sampling sampling : {Sampling::kJittered, Sampling::kPoissonDisk}) {
     for (int axis = 0; axis < 3; ++axis) {
