@@ -71,7 +71,15 @@ gate() {
     echo "what a step takes is not compared: that needs valgrind, and AVX2"
     return 0
   fi
-  bash bench/regress.sh --quick
+  # Libraries choose their code by the processor, so that counts are judged on the one that they were accepted on.
+  local here code=0
+  here=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)
+  bash bench/regress.sh --quick || code=$?
+  if [ "$code" -eq 1 ] && [ "$here" != "$(cat bench/baselines/processor.txt)" ]; then
+    echo "accepted on another processor ($(cat bench/baselines/processor.txt), here $here): told, and not judged"
+    return 0
+  fi
+  return "$code"
 }
 
 case "$part" in

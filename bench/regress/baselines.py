@@ -90,6 +90,8 @@ def accept(folder, known, measured, where, reason, keep=False):
     """Takes what was measured as the baseline, and writes into the log why, and what differs. `keep`: what was not
     measured stays as it is known."""
     os.makedirs(folder, exist_ok=True)
+    with open("/proc/cpuinfo") as text, open(os.path.join(folder, "processor.txt"), "w") as processor:
+        processor.write(next((row.split(": ", 1)[1] for row in text if row.startswith("model name")), "unknown\n"))
     if keep:
         measured = {**{name: (figure.kind, figure.value) for name, figure in known.items()}, **measured}
     rows = [row for row in compare(known, measured) if row[0] != "as before"]
