@@ -9,7 +9,7 @@ namespace repose::stability {
 
 struct ChildLimits {
   double seconds = 10.0;          ///< after which it is asked to stop
-  double grace = 30.0;            ///< s, that it may take to do so: nobody interrupts while bodies are filled
+  double grace = 5.0;             ///< s, that it may take to do so
   std::size_t memory = 6u << 30;  ///< bytes of address space; not with sanitizers, which reserve terabytes
 };
 

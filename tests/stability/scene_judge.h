@@ -1,5 +1,5 @@
 // Repose tests: runs a scene as a host would and judges what comes of it: all values finite, the ledger exact,
-// no energy from nowhere in silence, and refusals that say what is wrong.
+// no energy from nowhere, and refusals that say what is wrong.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 namespace repose::stability {
 
 struct Judgement {
-  /// kTold: energy from nowhere, of which time.energy_alarm told, or after which the run gave out.
+  /// kTold: a fault too: energy from nowhere, but time.energy_alarm told of it, or the run gave out after it.
   enum class End { kComplete, kCutShort, kGaveOut, kRefused, kTold, kFault };
   End end = End::kComplete;
   std::string why;              ///< of a fault, a refusal or a run that gave out
