@@ -16,6 +16,7 @@ import subprocess
 import sys
 
 from marked_page import put_between, table
+from processor import processor
 
 
 @dataclasses.dataclass
@@ -40,13 +41,6 @@ KINDS = {
                   ("stability/stability_test", "Battery.Case30_Above*:Battery.Case33_*:Battery.Case34_*")), (),
                  "laws", "within their bands", False),
 }
-
-
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return "unknown processor"
 
 
 def target():

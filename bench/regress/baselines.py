@@ -3,7 +3,12 @@ import collections
 import datetime
 import os
 import statistics
+import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tests"))
+from processor import processor
+
+PROCESSOR = "processor.txt"
 HISTORY = 20
 LEAST, MOST = 0.002, 0.01  # shares of a count
 FUNCTION, NOTABLE = 0.01, 0.003  # how far a function's instructions may go, if it has this share of a step's
@@ -11,6 +16,11 @@ KEPT = 0.001  # functions of a smaller share are not written down
 OTHER = {"misses": (0.01, 0.05), "memory": (0.02, 0.05), "error": (0.02, 0.05), "value": (0.01, 0.02)}
 
 Figure = collections.namedtuple("Figure", "kind value changes")
+
+
+def accepted_on(folder):
+    with open(os.path.join(folder, PROCESSOR)) as text:
+        return text.read().strip()
 
 
 def text_of(value):
@@ -90,8 +100,8 @@ def accept(folder, known, measured, where, reason, keep=False):
     """Takes what was measured as the baseline, and writes into the log why, and what differs. `keep`: what was not
     measured stays as it is known."""
     os.makedirs(folder, exist_ok=True)
-    with open("/proc/cpuinfo") as text, open(os.path.join(folder, "processor.txt"), "w") as processor:
-        processor.write(next((row.split(": ", 1)[1] for row in text if row.startswith("model name")), "unknown\n"))
+    with open(os.path.join(folder, PROCESSOR), "w") as text:
+        text.write(processor() + "\n")
     if keep:
         measured = {**{name: (figure.kind, figure.value) for name, figure in known.items()}, **measured}
     rows = [row for row in compare(known, measured) if row[0] != "as before"]

@@ -55,7 +55,12 @@ def gate(options):
         baselines.accept(options.baselines, baselines.read(options.baselines), measured, where, options.accept,
                          bool(options.only) or not options.caches)
         return 0
-    return 1 if any(row[0] in ("worse", "gone", "new") for row in rows) else 0
+    if not any(row[0] in ("worse", "gone", "new") for row in rows):
+        return 0
+    if options.tell_elsewhere and baselines.accepted_on(options.baselines) != baselines.processor():
+        print(f"regress: accepted on another processor ({baselines.accepted_on(options.baselines)}): told, and not judged")
+        return 0
+    return 1
 
 
 def ab(options):
@@ -82,6 +87,9 @@ def main():
     only = {"default": [], "type": lambda names: names.split(","), "metavar": "CASE,..."}
     of_gate.add_argument("--only", **only, help="these cases; or output, or study NAME")
     of_gate.add_argument("--no-caches", dest="caches", action="store_false", help="all but misses, branches and peak memory")
+    # Libraries choose their code by the processor.
+    of_gate.add_argument("--tell-elsewhere", action="store_true",
+                         help="on another processor than the baseline's, tell what is worse and end with 0")
     of_gate.add_argument("--accept", default="", metavar="REASON")
     of_gate.add_argument("--report", default="", metavar="FOLDER")
     of_gate.add_argument("--jobs", type=int, default=os.cpu_count())

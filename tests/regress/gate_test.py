@@ -78,6 +78,17 @@ class Gate(unittest.TestCase):
         self.assertRegex(told, "(?m)^gone +bare: blocks")
         self.assertRegex(told, "(?m)^new +bare: sorts")
 
+    def test_on_another_processor_it_may_only_tell(self):
+        self.accept()
+        worse = {"bare: heap allocations per step": ("exact", 1)}
+        self.assertEqual(self.call(worse, None, "--tell-elsewhere")[0], 1)
+        with unittest.mock.patch.object(baselines, "processor", return_value="another"):
+            self.assertEqual(self.call(worse)[0], 1)
+            code, told = self.call(worse, None, "--tell-elsewhere")
+        self.assertEqual(code, 0)
+        self.assertRegex(told, "(?m)^worse +bare: heap allocations")
+        self.assertIn("another processor", told)
+
     def test_the_log_keeps_every_reason(self):
         self.accept()
         self.accept(figures={"bare: instructions per step": ("count", 900000)}, reason="weights stay in registers")
