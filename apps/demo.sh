@@ -13,6 +13,7 @@ cmake --preset release -DREPOSE_TESTS=OFF -DREPOSE_BENCHMARKS=OFF >"$log" 2>&1 |
 cmake --build build/release --target repose -j "$(nproc)"
 
 repose=build/release/apps/repose/repose
+[[ " $* " == *" --resume "* ]] || set -- --overwrite "$@"
 "$repose" run apps/scenes/hourglass.json --out "$out" \
   --set grid.spacing=0.005 --set time.frames_per_second=24 --set time.frames=72 "$@"
 "$repose" info "$out"

@@ -27,6 +27,7 @@ struct RunArguments {
   std::string out;     ///< folder; empty: out/NAME
   std::string frames;  ///< "A-B" or "N"; empty: as the scene says
   bool resume = false;
+  bool overwrite = false;  ///< remove what an earlier run has left in the folder
   bool json = false;
   bool quiet = false;
 };

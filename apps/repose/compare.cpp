@@ -6,9 +6,9 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "apps/repose/base/json_file.h"
 #include "apps/repose/command.h"
 #include "apps/repose/run_log.h"
 #include "engine/io/atomic_file.h"
@@ -30,16 +30,6 @@ std::string hex(std::uint64_t number) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(number));
   return text;
-}
-
-Result<Json::Value> read_json(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is the path right?", path};
-  Json::Value json;
-  std::string errors;
-  if (!Json::parseFromStream(Json::CharReaderBuilder(), file, &json, &errors))
-    return Error{ErrorKind::kIo, "is damaged: " + errors, path};
-  return json;
 }
 
 /// A simulation of the recorded scene, in its last state.
@@ -156,7 +146,7 @@ int compare_command(const std::string& one, const std::string& other) {
   if (recorded != fs::exists(recording_in(other)))
     return fail({ErrorKind::kUsage, "one is a recording, the other is not", one + ", " + other});
   if (recorded) {
-    auto a = read_json(recording_in(one)), b = read_json(recording_in(other));
+    auto a = read_json_file(recording_in(one)), b = read_json_file(recording_in(other));
     if (!a) return fail(a.error());
     if (!b) return fail(b.error());
     return compare_recordings(one, *a, other, *b);

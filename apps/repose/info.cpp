@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "apps/repose/command.h"
+#include "apps/repose/output_folder.h"
 #include "apps/repose/run_log.h"
 #include "engine/io/checkpoint.h"
 #include "engine/io/point_cloud.h"
@@ -66,6 +67,13 @@ int print_vdb(const std::string& path) {
   return 0;
 }
 
+/// How a run ended; one that was killed could not say so itself.
+std::string end_of(const std::string& folder, const Json::Value& log) {
+  const std::string end = log["end"].asString();
+  if (end != kRunning || OutputFolder::in_use(folder)) return end;
+  return "killed, or its machine stopped; --resume goes on";
+}
+
 int print_run(const std::string& folder) {
   auto log = read_run_log(folder);
   if (!log) return fail(log.error());
@@ -85,7 +93,7 @@ int print_run(const std::string& folder) {
   }
   std::printf("%s: run of %s by Repose %s, %s, %d threads: %s\n", folder.c_str(),
               (*log)["scene"]["name"].asCString(), (*log)["repose"].asCString(), (*log)["target"].asCString(),
-              (*log)["threads"].asInt(), (*log)["end"].asCString());
+              (*log)["threads"].asInt(), end_of(folder, *log).c_str());
   std::printf("  frames  %u, %lld steps, %.1f s of computing\n", frames.size(), static_cast<long long>(steps),
               seconds);
   if (resumed > 0) {

@@ -1,8 +1,14 @@
 // Repose: the command.
+#include <poll.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
 #include <thread>
 
 #include "apps/repose/command.h"
@@ -122,7 +128,17 @@ class Workers {
   tbb::global_control control_;
 };
 
+/// Whether what was said could be: /dev/full takes nothing. A reader that has gone has read what it wanted.
+int told_all() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  if (poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0) return 0;
+  return fail({ErrorKind::kIo, "cannot be written; is its disk full?", "standard output"});
+}
+
 int main(int count, char** words) {
+  // A limit on the size of files is an error of writing, and names the file.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{"Repose: sand by the Material Point Method", "repose"};
   app.require_subcommand(1);
   app.failure_message(word_failure);
@@ -135,9 +151,13 @@ int main(int count, char** words) {
   add_scene_options(run_app, run.scene);
   run_app.add_option("--out", run.out, "folder (default: out/NAME)");
   run_app.add_option("--frames", run.frames, "A-B: write frames A to B; B: all up to B");
-  run_app.add_flag(
+  CLI::Option* const resume = run_app.add_flag(
       "--resume", run.resume,
       "go on after the newest checkpoint in the folder; frames, output and camera may have changed");
+  run_app
+      .add_flag("--overwrite", run.overwrite,
+                "begin anew where a run lies: removes what that run wrote, and nothing else")
+      ->excludes(resume);
   run_app.add_flag("--json", run.json, "one line of JSON per frame on standard output");
   run_app.add_flag("--quiet", run.quiet, "say nothing but errors");
   run_app.callback([&] {
@@ -237,9 +257,13 @@ int main(int count, char** words) {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
     const int status = app.exit(error);
-    return status == 0 ? 0 : static_cast<int>(ErrorKind::kUsage);
+    if (status != 0) return static_cast<int>(ErrorKind::kUsage);
+  } catch (const std::bad_alloc&) {
+    return fail({ErrorKind::kMemory, "memory ran out", ""});
+  } catch (const std::exception& failure) {
+    return fail({ErrorKind::kInternal, failure.what(), ""});
   }
-  return code;
+  return code != 0 ? code : told_all();
 }
 
 }  // namespace

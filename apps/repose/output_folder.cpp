@@ -10,6 +10,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
+
+#include "apps/repose/base/json_file.h"
+#include "engine/io/atomic_file.h"
 
 namespace repose {
 
@@ -34,6 +38,27 @@ bool is_at(int file, const std::string& path) {
   }, found{};
   return fstat(file, &opened) == 0 && stat(path.c_str(), &found) == 0 && opened.st_ino == found.st_ino &&
          opened.st_dev == found.st_dev;
+}
+
+/// "0012" and the like, before `rest`.
+bool is_number_before(std::string_view text, std::string_view rest) {
+  if (text.size() < 4 + rest.size() || !text.ends_with(rest)) return false;
+  text.remove_suffix(rest.size());
+  return text.find_first_not_of("0123456789") == text.npos;
+}
+
+/// Whether a run of this name writes a file of that name.
+bool is_run_file(std::string_view file, std::string_view name) {
+  if (file == "run.json" || file == "run.json.damaged" || file == "scene.json") return true;
+  if (!file.starts_with(name) || file.size() == name.size() || file[name.size()] != '.') return false;
+  file.remove_prefix(name.size() + 1);
+  if (file == "probes.csv" || file == "points.vtp.series") return true;
+  constexpr std::string_view kFrames[][2] = {{"points.", ".vdb"}, {"points.", ".ply"},
+                                             {"points.", ".vtp"}, {"surface.", ".vdb"},
+                                             {"fog.", ".vdb"},    {"state.", ".checkpoint"}};
+  return std::any_of(std::begin(kFrames), std::end(kFrames), [file](const auto& kind) {
+    return file.starts_with(kind[0]) && is_number_before(file.substr(kind[0].size()), kind[1]);
+  });
 }
 
 }  // namespace
@@ -82,6 +107,77 @@ Result<OutputFolder> OutputFolder::open(const std::string& folder, const std::st
     }
     if (is_at(lock, lock_path)) return OutputFolder(folder, name, lock, std::move(made));
     close(lock);
+  }
+}
+
+bool OutputFolder::in_use(const std::string& path) {
+  const int lock = ::open((path + "/.lock").c_str(), O_RDWR | O_CLOEXEC);
+  if (lock < 0) return false;
+  const bool held = flock(lock, LOCK_EX | LOCK_NB) != 0;
+  close(lock);
+  return held;
+}
+
+/// Of the scenes whose runs may have left files: this one, and the one that lies there.
+std::vector<std::string> OutputFolder::names() const {
+  std::vector<std::string> all{name_};
+  const auto add = [&all](const Json::Value& scene) {
+    if (!scene.isObject() || !scene["name"].isString()) return;
+    const std::string name = scene["name"].asString();
+    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+  };
+  const auto before = read_json_file(scene());
+  const auto written = read_json_file(log());
+  if (before) add(*before);
+  if (written && written->isObject()) add((*written)["scene"]);
+  return all;
+}
+
+std::vector<std::string> OutputFolder::left_by_a_run() const {
+  const std::vector<std::string> names = this->names();
+  std::vector<std::string> left;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder_, failure)) {
+    const std::string file = entry.path().filename().string();
+    if (std::any_of(names.begin(), names.end(),
+                    [&file](const std::string& name) { return is_run_file(file, name); }))
+      left.push_back(folder_ + "/" + file);
+  }
+  // A scene that somebody put there to run it is no run's.
+  if (left.size() == 1 && left[0] == scene()) left.clear();
+  if (left.empty()) return left;
+  for (const char* file :
+       {diagnostics::kFailure, diagnostics::kState, diagnostics::kScene, diagnostics::kPicture}) {
+    const std::string path = this->diagnostics() + "/" + file;
+    if (fs::exists(path, failure)) left.push_back(path);
+  }
+  std::sort(left.begin(), left.end());
+  return left;
+}
+
+Result<void> OutputFolder::clear() const {
+  for (const std::string& path : left_by_a_run()) {
+    std::error_code failure;
+    fs::remove(path, failure);
+    if (failure) return Error{ErrorKind::kCannotCreate, "cannot be removed: " + failure.message(), path};
+  }
+  std::error_code not_empty;
+  fs::remove(diagnostics(), not_empty);
+  return {};
+}
+
+void OutputFolder::remove_temporaries() const {
+  const std::vector<std::string> names = this->names();
+  std::error_code failure;
+  for (const std::string& folder : {folder_, diagnostics()}) {
+    for (const auto& entry : fs::directory_iterator(folder, failure)) {
+      const std::string file = entry.path().filename().string(), whole = AtomicFile::final_name(file);
+      const bool known = folder != folder_ ||
+                         std::any_of(names.begin(), names.end(),
+                                     [&whole](const std::string& name) { return is_run_file(whole, name); });
+      std::error_code ignored;
+      if (!whole.empty() && known) fs::remove(entry.path(), ignored);
+    }
   }
 }
 

@@ -15,6 +15,7 @@
 #include "apps/repose/output_folder.h"
 #include "apps/repose/progress.h"
 #include "apps/repose/run_log.h"
+#include "apps/repose/save_clock.h"
 #include "apps/repose/trouble.h"
 #include "engine/io/atomic_file.h"
 #include "engine/reading/identity.h"
@@ -30,6 +31,11 @@ void on_signal(int signal) {
   if (g_signal != 0) std::_Exit(128 + signal);
   g_signal = signal;
   if (Simulation* const simulation = g_simulation) simulation->interrupt();
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 struct FrameRange {
@@ -60,7 +66,7 @@ class Run {
         folder_(std::move(folder)),
         simulation_(std::move(simulation)),
         log_(scene_, arguments.scene.quality, *simulation_),
-        files_(scene_, folder_) {}
+        files_(scene_, folder_, simulation_->threads()) {}
   Run(const Run&) = delete;
   ~Run() { g_simulation = nullptr; }
 
@@ -68,9 +74,14 @@ class Run {
 
  private:
   Result<void> resume();
+  Result<void> write_missing_files();
   Error other_scene(Error error) const;
   Result<FrameReport> advance(Progress& progress);
+  void save_in_frame(Progress& progress);
   Result<void> write_frame(const FrameReport& frame);
+  Result<void> finish_files();
+  void log_files();
+  int go_on();
   int interrupted();
   Result<void> save_here();
   int stop(Error error, bool while_stepping);
@@ -78,6 +89,7 @@ class Run {
   void tell_integrator() const;
   void tell_redone(const FrameReport& frame, Progress& progress) const;
   void tell_warnings(Progress& progress);
+  void warn(const std::string& warning);
 
   const RunArguments& arguments_;
   Scene scene_;
@@ -87,6 +99,7 @@ class Run {
   RunLog log_;
   FrameFiles files_;
   Trouble trouble_;
+  SaveClock saves_;
   std::size_t warnings_told_ = 0;
 };
 
@@ -95,8 +108,10 @@ Result<void> Run::resume() {
     const std::string path = folder_.checkpoint(frame);
     auto loaded = simulation_->load(path);
     if (loaded) {
-      log_.continue_from(folder_.log(), simulation_->counters());
+      const std::string damaged = log_.continue_from(folder_.log(), simulation_->counters());
+      if (!damaged.empty()) warn(damaged);
       files_.list_series(log_.frames());
+      if (auto written = write_missing_files(); !written) return written;
       if (!arguments_.json && !arguments_.quiet)
         std::fprintf(stderr, "repose: resuming after frame %lld%s\n", static_cast<long long>(frame),
                      frame < frames_.last ? "" : ", so there is nothing left to do; --frames N goes further");
@@ -106,17 +121,31 @@ Result<void> Run::resume() {
     if (loaded.error().kind != ErrorKind::kIo) return loaded;
     std::fprintf(stderr, "repose: warning: %s\n", loaded.error().text().c_str());
   }
-  return Error{ErrorKind::kNoInput, "holds no checkpoint to resume from; run without --resume", folder_.path()};
+  const auto log = read_run_log(folder_.path());
+  if (folder_.checkpoints().empty() && !folder_.left_by_a_run().empty() && (!log || (*log)["frames"].empty())) {
+    if (!arguments_.json && !arguments_.quiet)
+      std::fprintf(stderr, "repose: no state had been saved yet, so the run begins anew\n");
+    return {};
+  }
+  const char* const none = folder_.checkpoints().empty() ? "holds no checkpoint to resume from"
+                                                         : "holds no checkpoint that can be read";
+  return Error{ErrorKind::kNoInput, std::string(none) + "; --overwrite begins anew", folder_.path()};
+}
+
+/// Of a run that was killed between the state after a frame and the last of the frame's files.
+Result<void> Run::write_missing_files() {
+  const Counters& at = simulation_->counters();
+  if (at.frame < frames_.first || at.time_in_frame > 0.0) return {};
+  if (log_.knows_files_of(at.frame) || files_.there(at.frame)) return {};
+  return files_.write(*simulation_, at.frame);
 }
 
 /// Says by which key the scene differs from the one that lies in the folder.
 Error Run::other_scene(Error error) const {
-  std::ifstream file(folder_.scene(), std::ios::binary);
-  const std::string before{std::istreambuf_iterator<char>(file), {}};
-  const std::string difference = first_difference(before, scene_.canonical);
+  const std::string difference = first_difference(text_of(folder_.scene()), scene_.canonical);
   if (difference.empty()) return error;
   error.message =
-      "belongs to another scene: " + difference + "; give it back its value, or run without --resume";
+      "belongs to another scene: " + difference + "; give it back its value, or begin anew with --overwrite";
   return error;
 }
 
@@ -143,23 +172,45 @@ Result<FrameReport> Run::advance(Progress& progress) {
       progress.update(
           static_cast<double>(counters.frame) + counters.time_in_frame / clock.length(counters.frame), detail);
     }
+    if (scene_.output.checkpoint && saves_.is_long_ago() && g_signal == 0) save_in_frame(progress);
     return g_signal == 0;
   });
 }
 
+/// A frame may take hours.
+void Run::save_in_frame(Progress& progress) {
+  auto saved = finish_files();
+  if (saved) saved = save_here();
+  if (saved) return;
+  saves_.end();  // tried again when as much time has passed
+  if (!arguments_.quiet) progress.leave();
+  warn("the state within a frame could not be saved: " + saved.error().text());
+}
+
+/// What has become whole goes into the log.
+void Run::log_files() {
+  for (const WrittenFrame& written : files_.take_written()) log_.add_written(written);
+}
+
+Result<void> Run::finish_files() {
+  auto finished = files_.finish();
+  log_files();
+  return finished;
+}
+
 Result<void> Run::write_frame(const FrameReport& frame) {
   if (frame.frame >= frames_.first) {
-    if (auto written = files_.write(*simulation_, frame.frame); !written) return written;
+    auto written = files_.write(*simulation_, frame.frame);
+    log_files();
+    if (!written) return written;
   }
   const Json::Value& row = log_.add(frame, *simulation_);
   tell(frame, row);
   if (auto written = log_.write(folder_.log()); !written) return written;
   const std::string probes = folder_.path() + "/" + scene_.name + ".probes.csv";
   if (auto written = log_.write_probes(*simulation_, probes); !written) return written;
-  if (!scene_.output.checkpoint) return {};
-  if (auto saved = simulation_->save(folder_.checkpoint(frame.frame)); !saved) return saved;
-  folder_.prune_checkpoints(frame.frame);
-  return {};
+  if (!scene_.output.checkpoint || (frame.frame < frames_.last && !saves_.pays())) return {};
+  return save_here();
 }
 
 void Run::tell(const FrameReport& frame, const Json::Value& row) const {
@@ -196,24 +247,30 @@ void Run::tell_redone(const FrameReport& frame, Progress& progress) const {
 void Run::tell_warnings(Progress& progress) {
   for (; warnings_told_ < simulation_->warnings().size(); ++warnings_told_) {
     const std::string& warning = simulation_->warnings()[warnings_told_];
-    log_.warn(warning);
-    if (arguments_.quiet) continue;
-    progress.leave();
-    std::fprintf(stderr, "repose: warning: %s\n", warning.c_str());
+    if (!arguments_.quiet) progress.leave();
+    warn(warning);
   }
 }
 
-/// In the midst of a frame.
+void Run::warn(const std::string& warning) {
+  log_.warn(warning);
+  if (!arguments_.quiet) std::fprintf(stderr, "repose: warning: %s\n", warning.c_str());
+}
+
+/// Also in the midst of a frame: whoever resumes goes on from there.
 Result<void> Run::save_here() {
   const std::int64_t frame = simulation_->counters().frame;
+  saves_.begin();
   if (auto saved = simulation_->save(folder_.checkpoint(frame)); !saved) return saved;
   folder_.prune_checkpoints(frame);
+  saves_.end();
   return {};
 }
 
 int Run::interrupted() {
   const int signal = g_signal;
   log_.end("interrupted");
+  if (auto written = finish_files(); !written) return stop(written.error(), false);
   if (auto saved = save_here(); !saved) return fail(saved.error());
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
   std::fprintf(stderr, "repose: interrupted; state saved in %s, the same command with --resume goes on\n",
@@ -221,25 +278,40 @@ int Run::interrupted() {
   return 128 + signal;
 }
 
+/// Where files could not be written, as where memory gave out, the state is good.
 int Run::stop(Error error, bool while_stepping) {
+  if (while_stepping) {
+    if (auto written = finish_files(); !written) fail(written.error());
+  }
   log_.end(error.text());
-  if (error.kind == ErrorKind::kMemory && while_stepping && simulation_->sound()) {
+  if (error.kind != ErrorKind::kPhysics && simulation_->sound()) {
     if (auto saved = save_here(); !saved)
-      fail(saved.error());
+      error.message += "; nor could the state be saved: " + saved.error().text();
     else
       error.message += "; the state is saved in " + folder_.path() + ", from which --resume goes on";
   }
   if (error.kind == ErrorKind::kPhysics) {
-    if (auto written = trouble_.write(error, scene_, *simulation_, folder_.path() + "/diagnostics"); !written)
+    if (auto written = trouble_.write(error, scene_, *simulation_, folder_.diagnostics()); !written)
       fail(written.error());
     else
-      error.message += "; what led to it is in " + folder_.path() + "/diagnostics";
+      error.message += "; what led to it is in " + folder_.diagnostics();
   }
   if (auto written = log_.write(folder_.log()); !written) fail(written.error());
   return fail(error);
 }
 
+/// Whatever libraries throw ends here, with the state saved where it is good.
 int Run::go() {
+  try {
+    return go_on();
+  } catch (const std::bad_alloc&) {
+    return stop({ErrorKind::kMemory, "memory ran out", folder_.path()}, false);
+  } catch (const std::exception& failure) {
+    return stop({ErrorKind::kInternal, failure.what(), folder_.path()}, false);
+  }
+}
+
+int Run::go_on() {
   if (arguments_.resume) {
     if (auto resumed = resume(); !resumed) return fail(resumed.error());
   }
@@ -248,6 +320,8 @@ int Run::go() {
   g_simulation = simulation_.get();
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGHUP, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);  // who reads along may go; the run is not for them
   tell_integrator();
   Progress progress(scene_.name, static_cast<double>(frames_.last), !arguments_.quiet && !arguments_.json);
   tell_warnings(progress);
@@ -263,6 +337,7 @@ int Run::go() {
     }
     if (g_signal != 0 && simulation_->counters().frame < frames_.last) return interrupted();
   }
+  if (auto written = finish_files(); !written) return stop(written.error(), false);
   log_.end("complete");
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
   progress.finish("done");
@@ -271,6 +346,26 @@ int Run::go() {
 }
 
 }  // namespace
+
+/// Whether the run may write into a folder in which others have. Errors: 73, 75.
+Result<void> may_write(const RunArguments& arguments, const Scene& scene, const OutputFolder& folder) {
+  std::error_code none;
+  if (std::filesystem::equivalent(arguments.scene.scene, folder.scene(), none) && !none &&
+      text_of(folder.scene()) != scene.canonical + "\n")
+    return Error{ErrorKind::kCannotCreate,
+                 "the run would write its own scene.json over the scene; choose another --out", folder.path()};
+  if (arguments.resume || arguments.overwrite) return {};
+  const std::vector<std::string> left = folder.left_by_a_run();
+  if (left.empty()) return {};
+  std::string what = std::to_string(left.size()) + " file" + (left.size() == 1 ? "" : "s");
+  if (const auto log = read_run_log(folder.path()); log)
+    what = "of '" + (*log)["scene"]["name"].asString() + "', " + std::to_string((*log)["frames"].size()) +
+           " frames, " + what;
+  return Error{
+      ErrorKind::kInUse,
+      "holds a run (" + what + "): --resume goes on with it, --overwrite removes it, another --out keeps both",
+      folder.path()};
+}
 
 int run_command(const RunArguments& arguments) {
   auto scene = read_scene(arguments.scene);
@@ -281,9 +376,14 @@ int run_command(const RunArguments& arguments) {
   if (!frames) return fail(frames.error());
   auto folder = OutputFolder::open(arguments.out.empty() ? "out/" + scene->name : arguments.out, scene->name);
   if (!folder) return fail(folder.error());
+  if (auto may = may_write(arguments, *scene, *folder); !may) return fail(may.error());
   auto simulation = Simulation::create(*scene, *options);
   if (!simulation) return fail(simulation.error());
   give_back_memory();
+  if (arguments.overwrite) {
+    if (auto cleared = folder->clear(); !cleared) return fail(cleared.error());
+  }
+  folder->remove_temporaries();
   return Run(arguments, std::move(*scene), *frames, std::move(*folder), std::move(*simulation)).go();
 }
 

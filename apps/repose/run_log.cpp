@@ -1,14 +1,13 @@
 #include "apps/repose/run_log.h"
 
-#include <json/reader.h>
 #include <json/writer.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
+#include "apps/repose/base/json_file.h"
 #include "engine/compiler/figures.h"
 #include "engine/io/atomic_file.h"
 
@@ -119,17 +118,23 @@ RunLog::RunLog(const Scene& scene, const std::string& quality, const Simulation&
   }
   log_["warnings"] = Json::Value(Json::arrayValue);
   log_["frames"] = Json::Value(Json::arrayValue);
-  log_["end"] = "running";
+  log_["end"] = kRunning;
   if (!scene.output.steps) return;
   log_["steps"] = Json::Value(Json::arrayValue);
   count_left_out(0);
   steps_.emplace(scene.output.residuals);
 }
 
-void RunLog::continue_from(const std::string& path, const Counters& last) {
-  std::ifstream file(path);
-  Json::Value old;
-  if (!file || !Json::parseFromStream(Json::CharReaderBuilder(), file, &old, nullptr) || !is_log(old)) return;
+std::string RunLog::continue_from(const std::string& path, const Counters& last) {
+  const auto read = read_json_file(path);
+  if (!read && read.error().kind == ErrorKind::kNoInput) return "";
+  if (!read || !is_log(*read)) {
+    std::error_code failure;
+    std::filesystem::rename(path, path + ".damaged", failure);
+    return path + " is damaged, so the figures of the frames up to " + std::to_string(last.frame) +
+           " are lost" + (failure ? "" : "; it lies beside the new one as run.json.damaged");
+  }
+  const Json::Value& old = *read;
   for (const Json::Value& frame : old["frames"]) {
     if (frame["frame"].asInt64() <= last.frame) log_["frames"].append(frame);
   }
@@ -143,6 +148,7 @@ void RunLog::continue_from(const std::string& path, const Counters& last) {
   for (const Json::Value& warning : old["warnings"]) {
     if (warning.isString()) warn(warning.asString());
   }
+  return "";
 }
 
 void RunLog::warn(const std::string& warning) {
@@ -198,6 +204,21 @@ const Json::Value& RunLog::add(const FrameReport& frame, Simulation& simulation)
   return log_["frames"].append(row);
 }
 
+void RunLog::add_written(const WrittenFrame& written) {
+  for (Json::Value& row : log_["frames"]) {
+    if (row["frame"].asInt64() != written.frame) continue;
+    for (const auto& [kind, seconds] : written.seconds) row["seconds"]["output"][kind] = seconds;
+    row["output_bytes"] = written.bytes;
+  }
+}
+
+bool RunLog::knows_files_of(std::int64_t frame) const {
+  const Json::Value& frames = log_["frames"];
+  return std::any_of(frames.begin(), frames.end(), [frame](const Json::Value& row) {
+    return row["frame"].asInt64() == frame && row.isMember("output_bytes");
+  });
+}
+
 Result<void> RunLog::write(const std::string& path) const {
   Json::StreamWriterBuilder builder;
   builder["indentation"] = " ";
@@ -239,13 +260,11 @@ Result<void> RunLog::write_probes(const Simulation& simulation, const std::strin
 
 Result<Json::Value> read_run_log(const std::string& folder) {
   const std::string path = folder + "/run.json";
-  std::ifstream file(path);
-  if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is this the folder of a run?", path};
-  Json::Value log;
-  std::string message;
-  if (!Json::parseFromStream(Json::CharReaderBuilder(), file, &log, &message) || !is_log(log)) {
+  auto log = read_json_file(path);
+  if (!log && log.error().kind == ErrorKind::kNoInput)
+    return Error{ErrorKind::kNoInput, "cannot be read; is this the folder of a run?", path};
+  if (!log || !is_log(*log))
     return Error{ErrorKind::kIo, "is not the log of a run; give a folder that run has written", path};
-  }
   return log;
 }
 

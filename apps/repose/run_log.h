@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/repose/frame_files.h"
 #include "apps/repose/step_rows.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
@@ -14,13 +15,16 @@
 
 namespace repose {
 
+/// What a log says of its end until there is one.
+inline constexpr const char* kRunning = "running";
+
 class RunLog {
  public:
   RunLog(const Scene& scene, const std::string& quality, const Simulation& simulation);
 
   /// Takes over the warnings, and the frames and steps up to those that were last, of the log of an earlier
-  /// part of the run, if there is one at `path`.
-  void continue_from(const std::string& path, const Counters& last);
+  /// part of the run, if there is one at `path`. A file that is damaged is set aside, which is told.
+  std::string continue_from(const std::string& path, const Counters& last);
 
   /// Keeps a warning, once.
   void warn(const std::string& warning);
@@ -32,6 +36,10 @@ class RunLog {
 
   /// Adds a frame and returns its row.
   const Json::Value& add(const FrameReport& frame, Simulation& simulation);
+
+  /// What the files of a frame took: seconds by kind, and their bytes, to the frame's row.
+  void add_written(const WrittenFrame& written);
+  bool knows_files_of(std::int64_t frame) const;
 
   /// The rows so far.
   const Json::Value& frames() const { return log_["frames"]; }

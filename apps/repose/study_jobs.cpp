@@ -126,6 +126,14 @@ Result<void> SetUp::take_known(const std::string& words) {
   return {};
 }
 
+bool all_known(const StudyDescription& study) {
+  return std::all_of(study.figures.begin(), study.figures.end(), [&](const Figure& figure) {
+    return figure.compares() == Compares::kItself ||
+           std::any_of(study.known.begin(), study.known.end(),
+                       [&](const KnownFigure& known) { return known.figure == figure.name; });
+  });
+}
+
 Result<void> SetUp::take_references() {
   FinestRun& finest = setup_.plan.study.finest;
   if (arguments_.reference_seeds > 0) finest.seeds = arguments_.reference_seeds;
@@ -137,6 +145,8 @@ Result<void> SetUp::take_references() {
       return taken;
     }
   }
+  // Runs of the finest point that no figure is compared with are not made.
+  if (all_known(setup_.plan.study)) finest.given = false;
   return {};
 }
 

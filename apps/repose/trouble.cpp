@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "apps/repose/output_folder.h"
 #include "apps/repose/scene_picture.h"
 #include "engine/io/atomic_file.h"
 
@@ -137,13 +138,16 @@ Result<void> Trouble::write(const Error& error, const Scene& scene, Simulation& 
     for (const std::size_t p : near) json["neighbours"].append(neighbour_json(points, p, failed->position));
     const bool finite = to_vec3(failed->position).allFinite();
     if (finite) {
-      if (auto drawn = write_png(picture_of(scene, simulation, points, *failed), folder + "/place.png"); !drawn)
+      if (auto drawn =
+              write_png(picture_of(scene, simulation, points, *failed), folder + "/" + diagnostics::kPicture);
+          !drawn)
         return drawn;
     }
   }
-  if (auto written = write_text(folder + "/failure.json", json.toStyledString()); !written) return written;
-  if (auto saved = simulation.save(folder + "/last_good.checkpoint"); !saved) return saved;
-  return write_text(folder + "/scene.json", scene.canonical + "\n");
+  if (auto written = write_text(folder + "/" + diagnostics::kFailure, json.toStyledString()); !written)
+    return written;
+  if (auto saved = simulation.save(folder + "/" + diagnostics::kState); !saved) return saved;
+  return write_text(folder + "/" + diagnostics::kScene, scene.canonical + "\n");
 }
 
 }  // namespace repose

@@ -7,7 +7,8 @@ import subprocess
 import measure
 
 WORSE = 1.03
-SCENE_STEPS = 150
+SCENE_STEPS = 450
+TURNS = 4  # of each program within a pair: a machine that others share changes from one second to the next
 
 
 def processor_time(words):
@@ -32,9 +33,10 @@ def ratio(base, head, case, pairs, seed=1):
     ratios = []
     programs = (base, head)
     for pair in range(pairs + 1):  # the first only warms up
-        order = [0, 1]
-        shuffle.shuffle(order)
-        seconds = {which: steps_of(programs[which]) for which in order}
+        seconds = [0.0, 0.0]
+        for _ in range(TURNS if pair > 0 else 1):
+            for which in shuffle.sample((0, 1), 2):
+                seconds[which] += steps_of(programs[which])
         if pair > 0:
             ratios.append(seconds[1] / seconds[0])
     medians = sorted(statistics.median(shuffle.choices(ratios, k=len(ratios))) for _ in range(2000))

@@ -3,10 +3,12 @@
 #include "engine/io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -22,6 +24,16 @@ std::string temporary_name(const std::string& path) {
   return path + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(count++);
 }
 
+/// The whole path of what a link leads to; `path` itself where there is nothing.
+std::string resolved(const std::string& path) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) != 0 || !S_ISLNK(found.st_mode)) return path;
+  char* const whole = ::realpath(path.c_str(), nullptr);
+  const std::string target = whole == nullptr ? path : whole;
+  std::free(whole);
+  return target;
+}
+
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   if (slash == std::string::npos) return ".";
@@ -30,15 +42,33 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
+std::string AtomicFile::final_name(const std::string& file) {
+  const std::size_t mark = file.rfind(".tmp");
+  if (mark == std::string::npos || mark == 0) return "";
+  const std::string number = file.substr(mark + 4);
+  const std::size_t dash = number.find('-');
+  const bool both = dash != std::string::npos && dash > 0 && dash + 1 < number.size();
+  if (!both || number.find_first_not_of("0123456789-") != std::string::npos || number.rfind('-') != dash)
+    return "";
+  return file.substr(0, mark);
+}
+
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
-  std::string temporary = temporary_name(path);
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  struct stat found {};
+  const bool there = ::stat(path.c_str(), &found) == 0;
+  if (there && S_ISDIR(found.st_mode))
+    return Error{ErrorKind::kCannotCreate, "cannot be created: there is a folder of that name", path};
+  const bool in_place = there && !S_ISREG(found.st_mode);
+  const std::string file = resolved(path);
+  std::string temporary = in_place ? "" : temporary_name(file);
+  const int descriptor = in_place ? ::open(file.c_str(), O_WRONLY | O_CLOEXEC)
+                                  : ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     const std::string reason = std::strerror(errno);
     return Error{ErrorKind::kCannotCreate,
                  "cannot be created: " + reason + "; its folder must exist and be writable", path};
   }
-  return AtomicFile(path, std::move(temporary), descriptor);
+  return AtomicFile(file, std::move(temporary), descriptor);
 }
 
 AtomicFile::AtomicFile(std::string path, std::string temporary, int descriptor)
@@ -71,7 +101,8 @@ Result<void> AtomicFile::fail(ErrorKind kind, const char* doing) {
 
 Result<void> AtomicFile::put(std::uint64_t offset, const std::byte* data, std::size_t bytes) {
   while (bytes > 0) {
-    const ssize_t done = ::pwrite(descriptor_, data, bytes, static_cast<off_t>(offset));
+    const ssize_t done = in_place() ? ::write(descriptor_, data, bytes)
+                                    : ::pwrite(descriptor_, data, bytes, static_cast<off_t>(offset));
     if (done < 0 && errno == EINTR) continue;
     if (done < 0) return fail(ErrorKind::kIo, "writing failed");
     data += done;
@@ -93,10 +124,10 @@ Result<void> AtomicFile::flush() {
 Result<void> AtomicFile::write(const void* data, std::size_t bytes) {
   if (!state_) return state_;
   const auto* first = static_cast<const std::byte*>(data);
-  if (buffer_.size() + bytes > kBufferBytes) {
+  if (!in_place() && buffer_.size() + bytes > kBufferBytes) {
     if (Result<void> done = flush(); !done) return done;
   }
-  if (bytes <= kBufferBytes) {
+  if (in_place() || bytes <= kBufferBytes) {
     buffer_.insert(buffer_.end(), first, first + bytes);
     return {};
   }
@@ -106,6 +137,11 @@ Result<void> AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 Result<void> AtomicFile::overwrite(std::uint64_t offset, const void* data, std::size_t bytes) {
+  if (in_place() && state_) {
+    REPOSE_ASSERT(offset + bytes <= buffer_.size());
+    std::memcpy(buffer_.data() + offset, data, bytes);
+    return {};
+  }
   if (Result<void> done = flush(); !done) return done;
   REPOSE_ASSERT(offset + bytes <= flushed_);
   return put(offset, static_cast<const std::byte*>(data), bytes);
@@ -113,6 +149,8 @@ Result<void> AtomicFile::overwrite(std::uint64_t offset, const void* data, std::
 
 Result<void> AtomicFile::commit() {
   if (Result<void> done = flush(); !done) return done;
+  if (in_place())
+    return ::close(std::exchange(descriptor_, -1)) == 0 ? state_ : fail(ErrorKind::kIo, "closing failed");
   // A failed fsync has dropped the pages it could not write: a second one would succeed and lie.
   if (::fsync(descriptor_) != 0) return fail(ErrorKind::kIo, "syncing to disk failed");
   if (::close(std::exchange(descriptor_, -1)) != 0) return fail(ErrorKind::kIo, "closing failed");

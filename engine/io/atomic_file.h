@@ -1,5 +1,6 @@
 // Repose: a file that appears whole or not at all. It is written beside its final name, synced and renamed,
-// so a crash, a kill or a full disk leaves the old file or the new one and never a torn one.
+// so a crash, a kill or a full disk leaves the old file or the new one and never a torn one. What is no regular
+// file, such as a pipe or /dev/null, is written as it is, and at the end.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +16,9 @@ namespace repose {
 /// Every error names the final path and the reason that the system gave.
 class AtomicFile {
  public:
-  /// Starts the temporary in the folder of `path`; an existing file at `path` stays until commit().
-  /// Error: 73 when the folder is missing or refuses.
+  /// Starts the temporary in the folder of `path`; an existing file at `path` stays until commit(). Where
+  /// `path` is a link, the file it leads to. Error: 73 when the folder is missing or refuses, or `path` is a
+  /// folder.
   static Result<AtomicFile> create(const std::string& path);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -29,6 +31,9 @@ class AtomicFile {
   /// Replaces bytes that were appended before. Error: as write().
   Result<void> overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
 
+  /// The name of the file of which one called `file` is the temporary; empty where it is none.
+  static std::string final_name(const std::string& file);
+
   /// Syncs file and folder and gives the file its name. Errors: 74; 73 when the name is taken by a folder.
   Result<void> commit();
 
@@ -37,6 +42,7 @@ class AtomicFile {
   Result<void> flush();
   Result<void> put(std::uint64_t offset, const std::byte* data, std::size_t bytes);
   Result<void> fail(ErrorKind kind, const char* doing);
+  bool in_place() const { return temporary_.empty(); }
   void discard();
 
   std::string path_;

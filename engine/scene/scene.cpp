@@ -143,7 +143,9 @@ bool is_file_name(const std::string& name) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
   const auto allowed = [&](char c) { return plain(c) || c == '_' || c == '-' || c == '.'; };
-  return !name.empty() && plain(name[0]) && std::all_of(name.begin(), name.end(), allowed);
+  constexpr std::size_t kMost = 200;  // a folder takes 255, and a frame's kind, number and temporary follow it
+  return !name.empty() && name.size() <= kMost && plain(name[0]) &&
+         std::all_of(name.begin(), name.end(), allowed);
 }
 
 template <class Named>
@@ -226,9 +228,10 @@ void describe(Fields& fields, Scene& scene) {
   fields.text("$schema", schema,
               "where editors find the JSON Schema of scenes; the reader does not look at it");
   fields.text("name", scene.name, "of the scene and of the files that a run writes", true);
-  fields.check(
-      is_file_name(scene.name), "name",
-      "must do as the name of a file: letters, digits, \"_\", \"-\" and \".\", the first a letter or digit");
+  fields.check(is_file_name(scene.name), "name",
+               "must do as the name of a file: at most 200 letters, digits, \"_\", \"-\" and \".\", the first "
+               "a letter or "
+               "digit");
   fields.choice("up", scene.up, kUpAxes, "the axis that points up; gravity follows it");
   fields.parameters("parameters",
                     "named numbers for expressions; they may use each other, pi and deg (pi / 180)");

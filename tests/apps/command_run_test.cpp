@@ -229,7 +229,8 @@ TEST_F(CommandRun, Warnings_AreThoseOfCheckAndInTheLog) {
   }
   EXPECT_THAT(warnings[0].asString(), HasSubstr("materials.sand: with friction_angle 43"));
   EXPECT_THAT(warnings[1].asString(), HasSubstr("bodies.box: "));
-  const Finished quiet = command({"run", tiny_scene(), "--out", path("out"), "--frames", "1", "--quiet"});
+  const Finished quiet =
+      command({"run", tiny_scene(), "--out", path("out"), "--frames", "1", "--quiet", "--overwrite"});
   EXPECT_EQ(quiet.err, "");
   EXPECT_EQ(read_json(path("out/run.json"))["warnings"].size(), 2u) << "unsaid, but kept";
   const Finished more = command({"run", tiny_scene(), "--out", path("out"), "--frames", "2", "--resume"});
@@ -307,8 +308,10 @@ TEST_F(CommandRun, OlderRunInTheFolder_IsNotResumed) {
   // A shorter run over a longer one: the checkpoints of the longer one must not outlive it.
   const std::string scene = tiny_scene();
   ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "6"}).code, 0);
-  ASSERT_EQ(repose({"run", scene, "--out", path("out"), "--frames", "2", "--set", "bodies.box.seed=5"}).code,
-            0);
+  ASSERT_EQ(
+      repose({"run", scene, "--out", path("out"), "--frames", "2", "--set", "bodies.box.seed=5", "--overwrite"})
+          .code,
+      0);
   EXPECT_TRUE(std::filesystem::exists(path("out/tiny.state.0002.checkpoint")));
   EXPECT_FALSE(std::filesystem::exists(path("out/tiny.state.0006.checkpoint")));
   const Finished more =

@@ -215,7 +215,7 @@ TEST_F(StepRowsOfARun, Auto_IsTheSameChoiceInPlanRunAndLog) {
   EXPECT_THAT(reason, EndsWith("cheaper: explicit"));
   EXPECT_THAT(plan.out, HasSubstr("\nsteps: explicit; " + reason + "\n"));
   EXPECT_EQ(run.err, "repose: explicit steps: " + reason + "\n");
-  EXPECT_EQ(command("run", {"--out", path("out"), "--frames", "1", "--quiet"}).err, "");
+  EXPECT_EQ(command("run", {"--out", path("out"), "--frames", "1", "--quiet", "--overwrite"}).err, "");
   ASSERT_EQ(repose({"run", tiny_scene(), "--out", path("said"), "--frames", "1"}).err, "");
   const Json::Value said = read_json(path("said/run.json"));
   EXPECT_EQ(said["integrator"]["reason"], "as time.integrator says");

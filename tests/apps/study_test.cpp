@@ -122,6 +122,16 @@ TEST_F(StudyCommand, Product_LeavesAllFiles) {
   EXPECT_EQ(read_json(path("one.json"))["hash"].asString(), all[0].at("hash"));
 }
 
+TEST_F(StudyCommand, KnownFigures_AskForNoRunsOfTheFinest) {
+  const std::string scene = tiny_scene(R"(, "study": {
+    "figures": [{"name": "height", "type": "center_of_mass"}, {"name": "lost", "type": "energy_residual"}],
+    "vary": [{"key": "grid.transfer", "values": "apic, flip"}], "finest": {"set": "grid.spacing=0.02", "seeds": 2}})");
+  ASSERT_EQ(study(scene, "finest", {}).code, 0);
+  EXPECT_THAT(rows("finest"), SizeIs(4)) << "two points, and two runs of the finest";
+  ASSERT_EQ(study(scene, "known", {"--reference", "height=0.05"}).code, 0);
+  EXPECT_THAT(rows("known"), SizeIs(2));
+}
+
 TEST_F(StudyCommand, OneByOne_FromTheScenesKey) {
   const std::string scene = tiny_scene(R"(, "study": {"design": "one_by_one",
     "figures": [{"name": "height", "type": "center_of_mass"}],

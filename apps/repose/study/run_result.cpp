@@ -1,12 +1,12 @@
 #include "apps/repose/study/run_result.h"
 
-#include <json/reader.h>
 #include <json/writer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
+#include "apps/repose/base/json_file.h"
 #include "engine/io/atomic_file.h"
 
 namespace repose {
@@ -19,9 +19,20 @@ std::vector<double> numbers_of(const Json::Value& list) {
 }
 
 bool is_result(const Json::Value& json) {
-  return json.isObject() && json["code"].isInt() && json["words"].isString() && json["hash"].isString() &&
-         json["seconds"].isNumeric() && json["steps"].isInt64() && json["particles"].isUInt64() &&
-         json["figures"].isObject();
+  if (!json.isObject() || !json["code"].isInt() || !json["steps"].isInt64() || !json["threads"].isInt() ||
+      !json["particles"].isUInt64() || !json["figures"].isObject())
+    return false;
+  for (const char* key : {"words", "build", "scene", "hash", "target"}) {
+    if (!json[key].isString()) return false;
+  }
+  for (const char* key : {"spacing", "time", "seconds", "peak_bytes"}) {
+    if (!json[key].isNumeric() && !json[key].isNull()) return false;
+  }
+  const Json::Value& figures = json["figures"];
+  return std::all_of(figures.begin(), figures.end(), [](const Json::Value& entry) {
+    return entry.isObject() &&
+           (!entry["curve"].isObject() || (entry["curve"]["x"].isArray() && entry["curve"]["y"].isArray()));
+  });
 }
 
 }  // namespace
@@ -64,13 +75,12 @@ Json::Value to_json(const RunResult& run) {
 }
 
 Result<RunResult> read_run_result(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Error{ErrorKind::kNoInput, "cannot be read", path};
-  Json::Value json;
-  std::string errors;
-  if (!Json::parseFromStream(Json::CharReaderBuilder(), file, &json, &errors) || !is_result(json))
+  auto read = read_json_file(path);
+  if (!read && read.error().kind == ErrorKind::kNoInput) return read.error();
+  if (!read || !is_result(*read))
     return Error{ErrorKind::kIo, "is not what a run of a study writes; remove it, and the run is made again",
                  path};
+  const Json::Value& json = *read;
   RunResult run;
   run.code = json["code"].asInt();
   run.words = json["words"].asString();
