@@ -82,7 +82,7 @@ Result<WrittenFrame> FrameFiles::write_all(const PointCloud& points, std::int64_
 }
 
 Result<void> FrameFiles::write_kind(const Kind& kind, const PointCloud& points, const std::string& path) const {
-  if (kind.name == "surface") return write_surface(points, surface_options(scene_), path);
+  if (kind.name == "surface") return write_surface(points, surface_options(scene_, threads_), path);
   if (kind.name == "fog") return write_fog(points, fog_options(scene_), path);
   if (kind.extension == "vdb") return write_vdb_points(points, path);
   return kind.extension == "ply" ? write_ply(points, path) : write_vtp(points, path);

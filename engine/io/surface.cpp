@@ -1,14 +1,10 @@
-// Repose: surface and fog, on OpenVDB. All lengths are in voxels until a grid is done, and those of the surface
-// count from near the middle of the cloud: OpenVDB meshes in float, which far from the origin has no digits
-// left.
+// Repose: surface and fog, as OpenVDB's grids. All lengths are in voxels until a grid is done, and those of the
+// surface count from near the middle of the cloud: far from the origin a float has no digits left.
 #include "engine/io/surface.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Dense.h>
-#include <openvdb/tools/Filter.h>
-#include <openvdb/tools/LevelSetRebuild.h>
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
@@ -16,6 +12,8 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/parallel.h"
+#include "engine/io/ball_union.h"
+#include "engine/io/level_set.h"
 #include "engine/io/point_layout.h"
 #include "engine/io/vdb_file.h"
 
@@ -25,8 +23,9 @@ namespace {
 namespace vdb = openvdb;
 using FloatLeaf = vdb::FloatTree::LeafNodeType;
 
-constexpr float kBand = 3.0f;    // of a level set, voxels to either side
-constexpr float kMargin = 1.5f;  // voxels about the balls in which distances are known, for meshing
+constexpr float kBand = 3.0f;  // of a level set, voxels to either side
+constexpr float kMargin =
+    1.5f;  // voxels about the balls' surface in which distances are known; as far as means reach
 
 // How far the surface lies outside the outermost particles, in the radius that a cloud gives them, which is
 // half the distance to their neighbours. Measured: with it the surface of a filled box encloses the volume of
@@ -43,8 +42,7 @@ Result<vdb::GridCPtrVec> built(const std::string& path, Make&& make) {
   return without_exceptions(path, "building the grid", [&]() -> Result<vdb::GridCPtrVec> {
     vdb::initialize();
     vdb::GridCPtrVec made;
-    // One thread: OpenVDB's meshing may depend on which triangle of two comes first.
-    Threads(1).for_each(1, [&](std::size_t) { made = make(); });
+    made = make();
     return made;
   });
 }
@@ -99,104 +97,55 @@ vdb::Vec3d middle_of(const PointCloud& points, double voxel, double step) {
   return middle;
 }
 
-/// A ball, or on a flat axis a stretch of `half` to either side of one.
-struct Ball {
-  vdb::Vec3d center;
-  float radius;
-  int flat_axis;
-  float half;
-};
-
-/// Lowers the values of a leaf to the distances from a ball.
-void add_to_leaf(const Ball& ball, FloatLeaf& leaf) {
-  constexpr std::size_t kSide = FloatLeaf::DIM;
-  float square[3][kSide];
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < kSide; ++k) {
-      const double at = leaf.origin()[axis] + static_cast<double>(k) - ball.center[axis];
-      const float away = static_cast<float>(std::abs(at)) - (axis == ball.flat_axis ? ball.half : 0.0f);
-      square[axis][k] = away > 0.0f ? away * away : 0.0f;
-    }
-  }
-  const float most = (ball.radius + kMargin) * (ball.radius + kMargin);
-  float* values = leaf.buffer().data();
-  for (std::size_t x = 0; x < kSide; ++x) {
-    for (std::size_t y = 0; y < kSide; ++y) {
-      const float across = square[0][x] + square[1][y];
-      if (across >= most) continue;
-      float* row = values + (x * kSide + y) * kSide;
-      for (std::size_t z = 0; z < kSide; ++z) {
-        row[z] = std::min(row[z], std::sqrt(across + square[2][z]) - ball.radius);
-      }
-    }
-  }
-}
-
-/// Distance from the union of balls, as far out as kMargin. Inside it is that to the nearest ball's surface.
-vdb::FloatGrid::Ptr unite(const PointCloud& points, const SurfaceOptions& options, const vdb::Vec3d& origin) {
-  auto grid = vdb::FloatGrid::create(kMargin);
-  auto accessor = grid->getAccessor();
+std::vector<Ball> balls_of(const PointCloud& points, const SurfaceOptions& options, const vdb::Vec3d& origin) {
+  std::vector<Ball> balls(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const double outside = kOutside * points.radius[p];
-    const double half = std::max(0.0, 0.5 * points.spacing - outside);
-    const Ball ball{vdb::Vec3d(points.position[p].data()) / options.voxel - origin,
-                    static_cast<float>((outside + options.radius) / options.voxel),
-                    options.flat_axis.value_or(-1), static_cast<float>(half / options.voxel)};
-    vdb::Coord lower, upper;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double reach = ball.radius + kMargin + (axis == ball.flat_axis ? ball.half : 0.0f);
-      lower[axis] =
-          static_cast<int>(std::floor(ball.center[axis] - reach)) & ~(static_cast<int>(FloatLeaf::DIM) - 1);
-      upper[axis] = static_cast<int>(std::ceil(ball.center[axis] + reach));
-    }
-    const int side = FloatLeaf::DIM;
-    for (int x = lower[0]; x <= upper[0]; x += side) {
-      for (int y = lower[1]; y <= upper[1]; y += side) {
-        for (int z = lower[2]; z <= upper[2]; z += side) add_to_leaf(ball, *accessor.touchLeaf({x, y, z}));
-      }
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      balls[p].center[axis] = points.position[p][axis] / options.voxel - origin[static_cast<int>(axis)];
+    balls[p].radius = static_cast<float>((kOutside * points.radius[p] + options.radius) / options.voxel);
   }
-  for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf) {
-    for (auto value = leaf->beginValueOff(); value; ++value) {
-      if (*value < kMargin) value.setValueOn();
-    }
-  }
-  return grid;
+  return balls;
 }
 
-/// Each distance averaged over its 27 neighbours, `times` over. Before the surface is drawn back, so that thin
-/// streams are not worn away; and of true distances, since those to the nearest ball are smaller inside and
-/// their mean would shrink the surface.
-vdb::FloatGrid::Ptr smoothed(const vdb::FloatGrid& surface, int times) {
-  const float band = kBand + std::sqrt(static_cast<float>(times));  // as far as values travel
-  auto grid = vdb::tools::levelSetRebuild(surface, 0.0f, band, band);
-  vdb::tools::Filter<vdb::FloatGrid> filter(*grid);
-  filter.setGrainSize(0);
-  filter.mean(1, times);
-  return grid;
+/// So far that the layer is about one spacing thick.
+Stretch stretch_of(const PointCloud& points, const SurfaceOptions& options) {
+  if (!options.flat_axis || points.size() == 0) return {};
+  const double half = std::max(0.0, 0.5 * points.spacing - kOutside * points.radius[0]);
+  return {*options.flat_axis, static_cast<float>(half / options.voxel)};
 }
 
-/// Moves a level set inwards by `depth`, from voxels to metres, and cuts its band to size.
-void draw_back(vdb::FloatGrid& grid, float depth, float voxel) {
-  for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf) {
-    for (auto value = leaf->beginValueOn(); value; ++value) {
-      const float moved = std::clamp(*value + depth, -kBand, kBand);
-      value.setValue(moved * voxel);
-      if (std::abs(moved) == kBand) value.setValueOff();
-    }
+/// A level set of what lies deeper than `depth`, in metres, with a band of kBand to either side.
+vdb::FloatGrid::Ptr drawn_back(const BallUnion& balls, float depth, float voxel, Threads& threads) {
+  auto grid = vdb::FloatGrid::create(kBand * voxel);
+  std::vector<FloatLeaf*> leaves;
+  for (std::size_t block = 0; block < balls.lattice.size(); ++block) {
+    const BlockLattice::Place& place = balls.lattice.place(block);
+    constexpr int kSide = BlockLattice::kSide;
+    leaves.push_back(grid->tree().touchLeaf({kSide * place[0], kSide * place[1], kSide * place[2]}));
   }
-  vdb::tools::changeLevelSetBackground(grid.tree(), kBand * voxel, false);
-  vdb::tools::pruneLevelSet(grid.tree(), false);
+  threads.for_each(leaves.size(), [&](std::size_t block) {
+    const float* const distance = values_of(balls.distance, block);
+    for (vdb::Index k = 0; k < FloatLeaf::SIZE; ++k) {
+      const float moved = std::clamp(distance[k] + depth, -kBand, kBand);
+      leaves[block]->setValueOnly(k, moved * voxel);
+      leaves[block]->setActiveState(k, std::abs(moved) < kBand);
+    }
+  });
+  vdb::tools::pruneLevelSet(grid->tree(), false);
+  return grid;
 }
 
 vdb::FloatGrid::Ptr make_surface(const PointCloud& points, const SurfaceOptions& options) {
+  Threads threads(options.threads);
   // Scenes about the world's origin get no shift at all, so that frames share their voxels.
   const vdb::Vec3d origin = middle_of(points, options.voxel, 4096.0);
   const float depth = static_cast<float>(options.radius / options.voxel);
-  vdb::FloatGrid::Ptr surface = unite(points, options, origin);
-  if (options.smoothing > 0) surface = smoothed(*surface, options.smoothing);
-  surface = vdb::tools::levelSetRebuild(*surface, 0.0f, std::max(1.0f, kBand - depth), kBand + depth);
-  draw_back(*surface, depth, static_cast<float>(options.voxel));
+  BallUnion balls = unite(balls_of(points, options, origin), stretch_of(points, options), kMargin, threads);
+  fill_cavities(balls.lattice, -kMargin, balls.distance);
+  // Before the surface is drawn back, so that thin streams are not worn away.
+  smooth(balls.lattice, options.smoothing, kMargin, balls.distance, threads);
+  redistance(balls.lattice, depth + kBand, std::max(1.0f, kBand - depth), balls.distance, threads);
+  vdb::FloatGrid::Ptr surface = drawn_back(balls, depth, static_cast<float>(options.voxel), threads);
   surface->setTransform(vdb::math::Transform::createLinearTransform(options.voxel));
   surface->transform().postTranslate(origin * options.voxel);
   surface->setGridClass(vdb::GRID_LEVEL_SET);
@@ -336,6 +285,7 @@ Result<void> check_surface(const PointCloud& points, const SurfaceOptions& optio
   if (points.size() > 0 && !(options.voxel <= points.spacing * (1.0 + 1e-9))) {
     return out_of_range("needs voxels of at most the spacing: particles fall through coarser ones", path);
   }
+  if (options.threads < 1) return out_of_range("needs at least one thread", path);
   if (!(options.radius >= 0.5 * points.spacing * (1.0 - 1e-9)) ||
       !(options.radius <= 4.0 * points.spacing * (1.0 + 1e-9)) || options.smoothing < 0) {
     return out_of_range("needs a radius from half a spacing to four, and smoothing of at least 0", path);

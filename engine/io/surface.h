@@ -1,6 +1,6 @@
 // Repose: the material as volumes for renderers and tools: its surface as a level set, and a fog of density
-// with velocity. Both are made from a cloud alone, in one thread and in the order of the cloud, so that the
-// same cloud gives the same bytes.
+// with velocity. Both are made from a cloud alone, and the same cloud gives the same bytes: the surface
+// whatever the number of threads, the fog in one thread and in the order of the cloud.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ struct SurfaceOptions {
   double radius = 0.0;  ///< m, from half a spacing to four; gaps that a ball of it does not fit into are closed
   int smoothing = 0;    ///< times that it is averaged over neighbouring voxels
   std::optional<int> flat_axis;  ///< of plane strain
+  int threads = 1;
 };
 
 /// How a fog is drawn. In plane strain it is one voxel thick, and that voxel one spacing.

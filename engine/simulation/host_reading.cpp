@@ -61,7 +61,7 @@ double SimulationOf<Real>::room_left() const {
 
 template <class Real>
 Result<DenseVolume> SimulationOf<Real>::surface(double voxel, double radius, int smoothing) const {
-  SurfaceOptions options = surface_options(scene_);
+  SurfaceOptions options = surface_options(scene_, threads());
   if (voxel > 0.0) options.voxel = voxel;
   if (radius > 0.0) options.radius = radius;
   if (smoothing >= 0) options.smoothing = smoothing;

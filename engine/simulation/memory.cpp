@@ -46,13 +46,16 @@ MemoryBound writing_memory(const Scene& scene) {
   // Position (double), velocity, id, radius, and the row that each goes to.
   constexpr double kPoint = 24.0 + 12.0 + 4.0 + 4.0 + 4.0;
   writing.per_point = kPoint + 4.0 * attributes + (output.fog.given ? 4.0 : 0.0);
+  // Balls, as they come and by their blocks.
+  constexpr double kBall = 32.0 + 16.0;
+  if (output.surface.given) writing.per_point += kBall;
   // A grid of points holds them all once more, sorted.
   constexpr double kGridOfPoints = 1.15;
   if (output.vdb) writing.per_point_in_file = kGridOfPoints * (36.0 + 4.0 * attributes);
   // Distances, their masks and the copies that smoothing and meshing make.
   constexpr double kCopiesOfSurface = 4.5, kCopiesOfFog = 4.0;
   const double surface = output.surface.given ? kCopiesOfSurface * 4.0 * kLeafVoxels *
-                                                    leaves_per_block(spacing, surface_options(scene).voxel)
+                                                    leaves_per_block(spacing, surface_options(scene, 1).voxel)
                                               : 0.0;
   const double fog =
       output.fog.given ? kCopiesOfFog * 16.0 * kLeafVoxels * leaves_per_block(spacing, fog_options(scene).voxel)

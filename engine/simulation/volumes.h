@@ -6,13 +6,14 @@
 
 namespace repose {
 
-inline SurfaceOptions surface_options(const Scene& scene) {
+inline SurfaceOptions surface_options(const Scene& scene, int threads) {
   const SurfaceDescription& surface = scene.output.surface;
   const double spacing = scene.grid.spacing;
   return {.voxel = surface.voxel > 0.0 ? surface.voxel : 0.5 * spacing,
           .radius = surface.radius * spacing,
           .smoothing = static_cast<int>(surface.smoothing),
-          .flat_axis = scene.grid.plane_strain};
+          .flat_axis = scene.grid.plane_strain,
+          .threads = threads};
 }
 
 inline FogOptions fog_options(const Scene& scene) {

@@ -362,12 +362,13 @@ TEST_F(AtomicFiles, Committed_HoldsWhatWasWrittenAndOverwritten) {
 }
 
 TEST_F(AtomicFiles, NameTakenByAFolder_CannotCreateAndNothingLeft) {
-  fs::create_directories(path("a"));
   Result<AtomicFile> file = AtomicFile::create(path("a"));
   ASSERT_TRUE(file);
+  fs::create_directories(path("a"));
   const Result<void> done = file->commit();
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kCannotCreate);
+  EXPECT_EQ(AtomicFile::create(path("a")).error().kind, ErrorKind::kCannotCreate) << "before the work";
   EXPECT_EQ(files(), 1u);
 }
 

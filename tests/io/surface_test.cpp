@@ -60,7 +60,7 @@ PointCloud cloud_of(const Shape& shape, const SeedOptions& options, double densi
 }
 
 SurfaceOptions surface_options() {
-  return {.voxel = 0.5 * kSpacing, .radius = kSpacing, .smoothing = 2, .flat_axis = {}};
+  return {.voxel = 0.5 * kSpacing, .radius = kSpacing, .smoothing = 2, .flat_axis = {}, .threads = 2};
 }
 
 /// A grid of a file, read by OpenVDB itself.
