@@ -14,6 +14,10 @@ target_compile_options(repose_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror>
   -Wno-restrict  # g++ 12 warns of std::string operator+ (GCC bug 105329)
   -ffp-contract=off -fno-math-errno)
+# With sanitizers gcc takes much of the standard library for uninitialized, as its manual says.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  add_compile_options(-Wno-maybe-uninitialized)
+endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # Highway needs a vector baseline; every x86-64 since 2006 has this one.
   target_compile_options(repose_flags INTERFACE -mssse3)

@@ -104,6 +104,21 @@ std::string meant(const CLI::App& app, const std::string& word) {
   return alike(word, name) ? " (did you mean " + name + "?)" : "";
 }
 
+/// An option that the command does not have, and one that is called much like it.
+std::string unknown_option(const CLI::App& command) {
+  for (const std::string& word : command.remaining()) {
+    if (word.size() < 2 || word[0] != '-') continue;
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    const std::string given = word.substr(0, word.find('=')), name = nearest(given, names);
+    return "'" + given + "' is no option of " + command.get_name() +
+           (alike(given, name) ? " (did you mean " + name + "?)" : "");
+  }
+  return "";
+}
+
 /// One message for whatever is wrong with the words, in the form of all others.
 std::string word_failure(const CLI::App* app, const CLI::Error& error) {
   const std::vector<std::string> unknown = app->remaining();
@@ -111,6 +126,10 @@ std::string word_failure(const CLI::App* app, const CLI::Error& error) {
   std::string text = no_command ? "name a command" : error.what();
   if (no_command && !unknown.empty())
     text = "'" + unknown.front() + "' is no command" + meant(*app, unknown.front());
+  if (!no_command) {
+    const std::string option = unknown_option(*app->get_subcommands().front());
+    if (!option.empty()) text = option;
+  }
   std::replace(text.begin(), text.end(), '\n', ' ');
   return "repose: error: " + text + "; see repose " +
          (no_command ? "" : app->get_subcommands().front()->get_name() + " ") + "--help\n";

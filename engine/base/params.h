@@ -55,6 +55,11 @@ class Fields {
   /// A nested object. `present` tells, and is set to, whether the key is there; a required one must be.
   virtual void object(const char* key, bool& present, bool required, const char* meaning,
                       const std::function<void(Fields&)>& describe) = 0;
+  /// An object that need not be there, and without which nothing of the kind happens; "off" says the same.
+  virtual void feature(const char* key, bool& present, const char* meaning,
+                       const std::function<void(Fields&)>& describe) {
+    object(key, present, false, meaning, describe);
+  }
 
   /// A list of objects; `item` is called once per element and appends what it reads. A required list holds
   /// at least one element; so does a required dictionary.

@@ -9,9 +9,9 @@ std::vector<Example> Age::examples() {
 }
 
 void Age::declare(Fields& fields, const SceneOutline&) {
-  fields.object("age", enabled, false,
-                "particles remember when they began, for the attribute \"age\" of output.attributes",
-                [](Fields&) {});
+  fields.feature("age", enabled,
+                 "particles remember when they began, for the attribute \"age\" of output.attributes",
+                 [](Fields&) {});
 }
 
 namespace {

@@ -33,8 +33,8 @@ void describe(Fields& fields, Collider& collider) {
   fields.number("friction", collider.friction,
                 {.meaning = "Coulomb's coefficient between material and solid", .low = 0.0});
   fields.choice("appearance", collider.appearance, kAppearances, "how pictures show it");
-  fields.object("motion", collider.motion.given, false, "how it moves; it rests where this is left out",
-                [&](Fields& motion) { describe(motion, collider.motion); });
+  fields.feature("motion", collider.motion.given, "how it moves; it rests where this is left out",
+                 [&](Fields& motion) { describe(motion, collider.motion); });
   fields.object("frames", collider.frames.given, false,
                 "the mesh deforms: one file per frame; \"shape.file\" has \"#\" where the number stands",
                 [&](Fields& frames) { describe(frames, collider.frames); });

@@ -14,12 +14,12 @@ std::vector<Example> DensityCorrection::examples() {
 }
 
 void DensityCorrection::declare(Fields& fields, const SceneOutline&) {
-  fields.object("density_correction", enabled, false,
-                "sand that is sheared for long stays as dense as its particles lie", [this](Fields& f) {
-                  f.number(
-                      "shear", shear,
-                      {.meaning = "shear strain over which a difference goes", .low = 0.0, .low_open = true});
-                });
+  fields.feature("density_correction", enabled,
+                 "sand that is sheared for long stays as dense as its particles lie", [this](Fields& f) {
+                   f.number(
+                       "shear", shear,
+                       {.meaning = "shear strain over which a difference goes", .low = 0.0, .low_open = true});
+                 });
 }
 
 namespace {

@@ -168,7 +168,7 @@ struct ConeDescription : EffectDescription {
                      Describe describe) {
     bool given = false;
     Parameters parameters;
-    fields.object(name, given, false, meaning, [&](Fields& f) { describe(f, parameters); });
+    fields.feature(name, given, meaning, [&](Fields& f) { describe(f, parameters); });
     if (given) entries.push_back({material, parameters});
   }
   std::string why_by(const char* name) const {

@@ -10,10 +10,10 @@ std::vector<Example> PlasticStrain::examples() {
 }
 
 void PlasticStrain::declare(Fields& fields, const SceneOutline&) {
-  fields.object("plastic_strain", enabled, false,
-                "particles add up how much they have flowed, for the attribute \"plastic_strain\" of "
-                "output.attributes",
-                [](Fields&) {});
+  fields.feature("plastic_strain", enabled,
+                 "particles add up how much they have flowed, for the attribute \"plastic_strain\" of "
+                 "output.attributes",
+                 [](Fields&) {});
 }
 
 namespace {

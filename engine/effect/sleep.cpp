@@ -11,9 +11,8 @@ std::vector<Example> Sleep::examples() {
 }
 
 void Sleep::declare(Fields& fields, const SceneOutline&) {
-  fields.object(
-      "sleep", enabled, false, "blocks whose sand rests are left out until something wakes them",
-      [this](Fields& f) {
+  fields.feature(
+      "sleep", enabled, "blocks whose sand rests are left out until something wakes them", [this](Fields& f) {
         f.number("speed", speed,
                  {.unit = "m/s",
                   .meaning = "a block with a faster particle is not calm; 0: sqrt(|g| dx) / 10",

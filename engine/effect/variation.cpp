@@ -56,11 +56,10 @@ void Variation::declare_in_cone(Fields& fields, const std::string& material) {
     f.integer("seed", p.seed, {.meaning = "of the noise", .low = 0.0});
     constexpr const char* kFactors =
         "name of a grid of floats in it: factors of 0 or more where particles begin";
-    f.object("friction_grid", p.friction_grid.given, false,
-             "the cone's slope is multiplied by what a grid holds",
-             [&](Fields& grid) { describe_vdb(grid, p.friction_grid, kFactors); });
-    f.object("cohesion_grid", p.cohesion_grid.given, false, "the cohesion is multiplied by what a grid holds",
-             [&](Fields& grid) { describe_vdb(grid, p.cohesion_grid, kFactors); });
+    f.feature("friction_grid", p.friction_grid.given, "the cone's slope is multiplied by what a grid holds",
+              [&](Fields& grid) { describe_vdb(grid, p.friction_grid, kFactors); });
+    f.feature("cohesion_grid", p.cohesion_grid.given, "the cohesion is multiplied by what a grid holds",
+              [&](Fields& grid) { describe_vdb(grid, p.cohesion_grid, kFactors); });
   };
   declare_entry(fields, kName, "patches of stronger and weaker sand, from smooth noise or grids", material,
                 describe);

@@ -11,9 +11,9 @@ std::vector<Example> VolumeCorrection::examples() {
 }
 
 void VolumeCorrection::declare(Fields& fields, const SceneOutline&) {
-  fields.object("volume_correction", enabled, false,
-                "sand that opened in tension closes before it carries load again, Tampubolon et al. 2017",
-                [](Fields&) {});
+  fields.feature("volume_correction", enabled,
+                 "sand that opened in tension closes before it carries load again, Tampubolon et al. 2017",
+                 [](Fields&) {});
 }
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include "engine/base/wording.h"
 #include "engine/reading/json_text.h"
+#include "engine/reading/names_of_others.h"
 
 namespace repose {
 namespace {
@@ -61,10 +62,20 @@ void JsonFields::mistaken(const Json::Value& value, const std::string& path, con
   complain(value, path, "found " + found_text(value) + "; expected " + expected);
 }
 
+/// What other programs call by the name, where it stands here or elsewhere in the scene; else the nearest.
+std::string JsonFields::meant_by(const std::string& key) const {
+  for (const auto& [theirs, name, whole] : kNamesOfOthers) {
+    if (key != theirs) continue;
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) return did_you_mean(name, {name});
+    if (path_.empty() && *whole != 0) return did_you_mean(whole, {whole});
+  }
+  return did_you_mean(key, known_);
+}
+
 void JsonFields::complain_of_unknown(const std::string& key) {
   const std::string of_type = type_.empty() ? "" : " for type \"" + type_ + "\"";
   reading_.complaints.add(reading_.source.key_of(object_[key].getOffsetStart()), path_of(key),
-                          "unknown key" + of_type + "; " + did_you_mean(key, known_));
+                          "unknown key" + of_type + "; " + meant_by(key));
 }
 
 void JsonFields::finish() {
@@ -95,12 +106,20 @@ bool JsonFields::evaluate(Json::Value& value, const std::string& path) {
   return true;
 }
 
+/// Where a text would do as an expression.
+std::string JsonFields::hint_of_expression(const Json::Value& value) {
+  const std::string text = value.isString() ? value.asString() : "";
+  const bool looks_like_one = text.find_first_of("+*/(") != std::string::npos;
+  if (text.empty() || (!looks_like_one && !reading_.expressions.evaluate(text).value)) return "";
+  return "; an expression begins with \"=\": \"= " + text + "\"";
+}
+
 bool JsonFields::read_number(Json::Value& value, const std::string& path, const Quantity& quantity,
                              double& number) {
   const std::string expected = expected_text("a number", quantity);
   if (!evaluate(value, path)) return false;
   if (!value.isNumeric()) {
-    mistaken(value, path, expected);
+    mistaken(value, path, expected + hint_of_expression(value));
     return false;
   }
   const double read = value.asDouble();
@@ -117,7 +136,7 @@ bool JsonFields::read_integer(Json::Value& value, const std::string& path, const
   const std::string expected = expected_text("a whole number", quantity);
   if (!evaluate(value, path)) return false;
   if (!value.isNumeric() || (value.isDouble() && std::trunc(value.asDouble()) != value.asDouble())) {
-    mistaken(value, path, expected);
+    mistaken(value, path, expected + hint_of_expression(value));
     return false;
   }
   if (!value.isInt64() || !in_range(value.asDouble(), quantity)) {
@@ -145,10 +164,23 @@ bool JsonFields::read_row(Json::Value& value, const std::string& path, int width
   return read;
 }
 
+/// The first keys of an object that is not there.
+std::string JsonFields::hint_of_keys(const std::string& path, const std::function<void(Fields&)>& describe) {
+  Json::Value empty(Json::objectValue);
+  Complaints unheard;
+  Reading aside{reading_.source, reading_.expressions, unheard, reading_.allow_outside_paths};
+  JsonFields fields(empty, path, aside, this);
+  describe(fields);
+  constexpr std::size_t kTold = 3;
+  std::vector<std::string> keys = fields.known_;
+  keys.resize(std::min(keys.size(), kTold));
+  return keys.empty() ? "" : " with keys such as " + list_text(keys);
+}
+
 void JsonFields::read_object(Json::Value& value, const std::string& path,
                              const std::function<void(Fields&)>& describe) {
   if (!value.isObject()) {
-    mistaken(value, path, "an object {...}");
+    mistaken(value, path, "an object {...}" + hint_of_keys(path, describe));
     return;
   }
   JsonFields fields(value, path, reading_, this);
@@ -282,6 +314,19 @@ void JsonFields::object(const char* key, bool& present, bool required, const cha
   Json::Value* found = find(key, required, "an object: " + std::string(meaning));
   present = found != nullptr;
   if (present) read_object(*found, path_of(key), describe);
+}
+
+/// The tree then has what the words stand for.
+void JsonFields::feature(const char* key, bool& present, const char* meaning,
+                         const std::function<void(Fields&)>& describe) {
+  const Json::Value& found = std::as_const(object_)[key];
+  const std::string word = found.isString() ? found.asString() : "";
+  if (word == "off") object_.removeMember(key);
+  if (word == "on") {
+    Json::Value all(Json::objectValue);
+    object_[key].swapPayload(all);
+  }
+  object(key, present, false, meaning, describe);
 }
 
 void JsonFields::list(const char* key, bool required, const char* meaning,

@@ -45,6 +45,8 @@ class JsonFields final : public Fields {
                const char* meaning) override;
   void object(const char* key, bool& present, bool required, const char* meaning,
               const std::function<void(Fields&)>& describe) override;
+  void feature(const char* key, bool& present, const char* meaning,
+               const std::function<void(Fields&)>& describe) override;
   void list(const char* key, bool required, const char* meaning,
             const std::function<void(Fields&)>& item) override;
   void dictionary(const char* key, bool required, const char* meaning,
@@ -62,7 +64,10 @@ class JsonFields final : public Fields {
   std::string path_of(const std::string& key) const;
   Json::Value* find(const char* key, bool required, const std::string& expected);
   void complain(const Json::Value& value, const std::string& path, const std::string& message);
+  std::string meant_by(const std::string& key) const;
   void complain_of_unknown(const std::string& key);
+  std::string hint_of_expression(const Json::Value& value);
+  std::string hint_of_keys(const std::string& path, const std::function<void(Fields&)>& describe);
   void mistaken(const Json::Value& value, const std::string& path, const std::string& expected);
   bool evaluate(Json::Value& value, const std::string& path);
   bool read_number(Json::Value& value, const std::string& path, const Quantity& quantity, double& number);

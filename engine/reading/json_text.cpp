@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -94,6 +95,15 @@ void decode_numbers(Json::Value& value, std::string_view text, Complaints& compl
   value.swapPayload(number);  // keeps the offsets of `value`
 }
 
+/// Where a bracket closes at `at`, the comma before it.
+std::optional<std::ptrdiff_t> comma_before_an_end(std::string_view text, std::ptrdiff_t at) {
+  if (at <= 0 || static_cast<std::size_t>(at) >= text.size()) return {};
+  const char end = text[static_cast<std::size_t>(at)];
+  const std::size_t before = text.find_last_not_of(" \t\r\n", static_cast<std::size_t>(at - 1));
+  if ((end != '}' && end != ']') || before == text.npos || text[before] != ',') return {};
+  return static_cast<std::ptrdiff_t>(before);
+}
+
 /// JsonCpp reports "* Line 3, Column 5" and on the next line, indented, what is wrong. Of several errors the
 /// first counts; the others mostly follow from it.
 void complain_of_syntax(const std::string& report, const SourceText& source, Complaints& complaints) {
@@ -106,7 +116,12 @@ void complain_of_syntax(const std::string& report, const SourceText& source, Com
   lines >> word >> word >> line >> comma >> word >> column >> std::ws;
   std::string message;
   std::getline(lines, message);
-  complaints.add(source.offset_of(line, column), "", "not JSON: " + message);
+  const std::ptrdiff_t at = source.offset_of(line, column);
+  if (const auto useless = comma_before_an_end(source.text(), at)) {
+    complaints.add(*useless, "", "not JSON: a comma after which nothing comes; remove it");
+    return;
+  }
+  complaints.add(at, "", "not JSON: " + message);
 }
 
 }  // namespace
@@ -115,6 +130,11 @@ Json::Value parse_json(const SourceText& source, Complaints& complaints) {
   Json::Value root;
   if (const auto deep = source.deeper_than(kMostNested)) {
     complaints.add(*deep, "", "nested too deep; at most " + std::to_string(kMostNested) + " levels are read");
+    return root;
+  }
+  if (const std::size_t nul = source.text().find('\0'); nul != std::string::npos) {
+    complaints.add(static_cast<std::ptrdiff_t>(nul), "",
+                   "not JSON: a byte of value 0; a scene is text in UTF-8");
     return root;
   }
   Json::CharReaderBuilder builder;

@@ -2,10 +2,12 @@
 #include "engine/reading/overrides.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <utility>
 
 #include "engine/base/wording.h"
+#include "engine/reading/expressions.h"
 #include "engine/reading/json_text.h"
 
 namespace repose {
@@ -143,6 +145,33 @@ void apply(const std::string& argument, Json::Value& root, std::ptrdiff_t offset
   *target = parse_value(argument.substr(equals + 1), offset);
 }
 
+/// Whether an expression somewhere in `value` names a parameter.
+bool uses(const Json::Value& value, const std::string& name) {
+  if (value.isString()) {
+    const std::string text = value.asString();
+    if (!Expressions::is_expression(text)) return false;
+    const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+      const std::size_t end = at + name.size();
+      if (!in_name(text[at - 1]) && (end == text.size() || !in_name(text[end]))) return true;
+    }
+    return false;
+  }
+  return std::any_of(value.begin(), value.end(),
+                     [&name](const Json::Value& child) { return uses(child, name); });
+}
+
+/// A parameter that the scene did not have, and that no expression names, changes nothing: it is misspelt.
+void check_parameter(const std::string& argument, const std::vector<std::string>& known,
+                     const Json::Value& root, std::ptrdiff_t offset, Complaints& complaints) {
+  const std::vector<std::string> steps = split_path(argument.substr(0, argument.find('=')));
+  if (steps.size() != 2 || steps[0] != "parameters") return;
+  if (std::find(known.begin(), known.end(), steps[1]) != known.end() || uses(root, steps[1])) return;
+  complaints.add(
+      offset, "",
+      "no expression of the scene names a parameter \"" + steps[1] + "\"; " + did_you_mean(steps[1], known));
+}
+
 }  // namespace
 
 const Json::Value* find_value(Json::Value& root, const std::string& path) {
@@ -152,8 +181,16 @@ const Json::Value* find_value(Json::Value& root, const std::string& path) {
 
 void apply_overrides(const std::vector<std::string>& overrides, Json::Value& root, SourceText& source,
                      Complaints& complaints) {
-  for (const std::string& argument : overrides)
-    apply(argument, root, source.add_words("--set " + argument), complaints);
+  std::vector<std::string> parameters;
+  if (root.isMember("parameters") && root["parameters"].isObject())
+    parameters = root["parameters"].getMemberNames();
+  std::vector<std::ptrdiff_t> places;
+  for (const std::string& argument : overrides) {
+    places.push_back(source.add_words("--set " + argument));
+    apply(argument, root, places.back(), complaints);
+  }
+  for (std::size_t k = 0; k < overrides.size(); ++k)
+    check_parameter(overrides[k], parameters, root, places[k], complaints);
 }
 
 }  // namespace repose

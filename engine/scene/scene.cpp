@@ -111,11 +111,11 @@ void describe_output(Fields& fields, Scene& scene) {
     const std::string lacks = lacking(scene, attribute);
     fields.check(lacks.empty(), "attributes", lacks);
   }
-  fields.object("surface", output.surface.given, false,
-                "the surface of the material, a level set, as NAME.surface.####.vdb",
-                [&](Fields& f) { describe_surface(f, output.surface, spacing); });
-  fields.object(
-      "fog", output.fog.given, false, "density and velocity of the material on voxels, as NAME.fog.####.vdb",
+  fields.feature("surface", output.surface.given,
+                 "the surface of the material, a level set, as NAME.surface.####.vdb",
+                 [&](Fields& f) { describe_surface(f, output.surface, spacing); });
+  fields.feature(
+      "fog", output.fog.given, "density and velocity of the material on voxels, as NAME.fog.####.vdb",
       [&](Fields& f) { describe_voxel(f, output.fog.voxel, spacing, "edge of a voxel; 0: grid.spacing"); });
   fields.flag("checkpoint", output.checkpoint, "a state to resume from per frame, the last two kept");
   fields.flag("steps", output.steps, "figures of each step in run.json, of the first 5000 (docs/output.md)");

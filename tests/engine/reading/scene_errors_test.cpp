@@ -72,7 +72,8 @@ TEST(SceneErrors, WrongType_SaysFoundAndExpected) {
   EXPECT_EQ(errors(with("0.1", "true")),
             "s.json:4:23: grid.spacing: found true; expected a number in m, greater than 0");
   EXPECT_EQ(errors(with("{\"spacing\": 0.1}", "[]")),
-            "s.json:4:11: grid: found a list; expected an object {...}");
+            "s.json:4:11: grid: found a list; expected an object {...} with keys such as \"spacing\", "
+            "\"precision\", \"stencil\"");
   EXPECT_EQ(errors(with("\"good\"", "12")), "s.json:3:11: name: found 12; expected text, such as \"sand\"");
   EXPECT_EQ(
       override_errors("bodies[0].velocity=[1, 2]"),
@@ -82,6 +83,57 @@ TEST(SceneErrors, WrongType_SaysFoundAndExpected) {
       override_errors("time={\"frames\": 1.5}"),
       "--set time={\"frames\": 1.5}: time.frames: found 1.5; expected a whole number, at least 1 and at most "
       "1e+09");
+}
+
+TEST(SceneErrors, WordsOfOtherPrograms_LeadToOurs) {
+  EXPECT_EQ(override_errors("fps=24"),
+            "--set fps=24: fps: unknown key; did you mean \"time.frames_per_second\"?");
+  EXPECT_EQ(override_errors("time.fps=24"),
+            "--set time.fps=24: time.fps: unknown key; did you mean \"frames_per_second\"?");
+  EXPECT_THAT(override_errors("materials.sand.E=1e6"), testing::HasSubstr("did you mean \"youngs_modulus\"?"));
+  EXPECT_THAT(override_errors("dx=0.1"), testing::HasSubstr("did you mean \"grid.spacing\"?"));
+  EXPECT_THAT(override_errors("up=Z"), testing::HasSubstr("did you mean \"z\"?"));
+  EXPECT_THAT(override_errors("gravity=[0, -9.81, 0]"),
+              testing::HasSubstr(
+                  "found a list; expected an object {...} with keys such as \"acceleration\", \"ramp\""));
+}
+
+TEST(SceneErrors, ExpressionWithoutItsSign_IsToldOfIt) {
+  EXPECT_EQ(
+      errors(with("0.1", "\"8*dx\"")),
+      "s.json:4:23: grid.spacing: found text \"8*dx\"; expected a number in m, greater than 0; an expression "
+      "begins with \"=\": \"= 8*dx\"");
+  const std::string text =
+      with("\"grid\": {\"spacing\": 0.1}", "\"parameters\": {\"a\": 1}, \"grid\": {\"spacing\": \"a\"}");
+  EXPECT_THAT(errors(text), testing::HasSubstr("begins with \"=\": \"= a\""));
+  EXPECT_THAT(override_errors("bodies[0].seed=2*2"), testing::HasSubstr("\"= 2*2\""));
+}
+
+TEST(SceneErrors, ParameterThatNobodyNames_IsMisspelt) {
+  const std::string text = with("\"grid\": {\"spacing\": 0.1}",
+                                "\"parameters\": {\"coarse\": 1}, \"grid\": {\"spacing\": \"= 0.1 * coarse\"}");
+  EXPECT_EQ(errors(text, {.overrides = {"parameters.coarse=2"}}), "");
+  EXPECT_EQ(errors(text, {.overrides = {"parameters.corse=2"}}),
+            "--set parameters.corse=2: no expression of the scene names a parameter \"corse\"; did you mean "
+            "\"coarse\"?");
+  EXPECT_EQ(errors(text, {.overrides = {"parameters.fine=2", "grid.spacing== coarse / fine"}}), "");
+  EXPECT_NE(errors(text, {.overrides = {"parameters.fine=2", "parameters.finer== coarse / 2"}}), "");
+}
+
+TEST(SceneErrors, Features_AreSwitchedByAWord) {
+  const std::string with_it = with("\"bodies\"", "\"volume_correction\": {}, \"bodies\"");
+  const auto identity = [](const std::string& text, std::vector<std::string> overrides) {
+    const Result<Scene> scene = read_scene_text(text, "s.json", ".", {.overrides = std::move(overrides)});
+    EXPECT_TRUE(scene) << scene.error().text();
+    return scene ? scene->identity : "";
+  };
+  EXPECT_EQ(identity(with_it, {"volume_correction=off"}), identity(kGood, {}));
+  EXPECT_EQ(identity(kGood, {"volume_correction=off", "sleep=off"}), identity(kGood, {}));
+  EXPECT_EQ(identity(kGood, {"volume_correction=on"}), identity(with_it, {}));
+  EXPECT_NE(identity(kGood, {"materials.sand.hardening=on"}), identity(kGood, {}));
+  EXPECT_THAT(override_errors("gravity=off"), testing::HasSubstr("\"acceleration\""))
+      << "it acts where it is left out";
+  EXPECT_NE(override_errors("grid=off"), "");
 }
 
 TEST(SceneErrors, OutOfRange_SaysRangeAndUnit) {

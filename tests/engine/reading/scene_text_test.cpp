@@ -12,6 +12,26 @@
 namespace repose {
 namespace {
 
+TEST(SceneText, UselessComma_IsToldWhereItStands) {
+  const auto error = [](const std::string& text) {
+    const Result<Scene> scene = read_scene_text(text, "s.json", ".");
+    return scene ? "" : scene.error().text();
+  };
+  EXPECT_EQ(error("{\n  \"repose\": 1,\n}"),
+            "s.json:2:14: not JSON: a comma after which nothing comes; remove it");
+  EXPECT_EQ(error("{\"a\": [1, 2,\n  ]}"),
+            "s.json:1:12: not JSON: a comma after which nothing comes; remove it");
+}
+
+TEST(SceneText, ByteOfValueZero_IsRefusedWhereverItStands) {
+  const std::string nul(1, '\0');
+  for (const std::string& text : {kGood + nul + "{", nul + kGood, with("\"good\"", "\"go" + nul + "od\"")}) {
+    const Result<Scene> scene = read_scene_text(text, "s.json", ".");
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error().text(), testing::HasSubstr("a byte of value 0"));
+  }
+}
+
 TEST(SceneErrors, NoFile_NoInput) {
   const Result<Scene> scene = read_scene("no/such/scene.json");
   ASSERT_FALSE(scene);
@@ -27,7 +47,8 @@ TEST(SceneErrors, Folder_NoInput) {
 
 TEST(SceneErrors, Syntax_LineAndColumn) {
   EXPECT_EQ(errors(with("1,", "1")), "s.json:3:3: not JSON: Missing ',' or '}' in object declaration");
-  EXPECT_EQ(errors(with("0.1}", "0.1,}")), "s.json:4:27: not JSON: Missing '}' or object member name");
+  EXPECT_EQ(errors(with("0.1}", "0.1,}")),
+            "s.json:4:26: not JSON: a comma after which nothing comes; remove it");
   EXPECT_EQ(errors(""), "s.json:1:1: not JSON: Syntax error: value, object or array expected.");
   EXPECT_EQ(errors("[]"), "s.json:1:1: found a list; a scene is an object {...}");
 }
