@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "engine/io/checkpoint.h"
+#include "engine/simulation/meaning.h"
 #include "engine/simulation/memory.h"
 #include "engine/simulation/simulation_of.h"
 #include "engine/simulation/warnings.h"
@@ -65,12 +66,13 @@ Result<void> SimulationOf<Real>::begin() {
   stepper_->reserve(state_);
   if (auto fits = stepper_->sort_if_due(state_); !fits) return refuse(fits.error());
   stepper_->begin_frame(state_);
-  warnings_ = scene_warnings(scene_);
-  for (std::string& warning : thin_solid_warnings(solids_, state_.spacing)) {
-    warnings_.push_back(std::move(warning));
-  }
-  for (std::string& warning : seeding_warnings(solids_at(solids_, 0.0), state_, stepper_->threads())) {
-    warnings_.push_back(std::move(warning));
+  const std::vector<Solid> at_the_start = solids_at(solids_, 0.0);
+  for (auto&& warnings :
+       {scene_warnings(scene_), unit_warnings(scene_), thin_solid_warnings(solids_, state_.spacing),
+        seeding_warnings(at_the_start, state_, stepper_->threads()), overlap_warnings(state_),
+        softness_warnings(scene_, state_), floor_warnings(scene_, at_the_start, state_),
+        mouth_warnings(scene_, at_the_start)}) {
+    warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
   }
   return {};
 }

@@ -17,10 +17,12 @@ using ::testing::HasSubstr;
 using CommandErrors = CommandTest;
 
 TEST_F(CommandErrors, MisspeltOption_IsToldWhichOneWasMeant) {
-  EXPECT_EQ(refusal(64, {"check", tiny_scene(), "--thread", "2"}),
-            "repose: error: '--thread' is no option of check (did you mean --threads?); see repose check --help\n");
+  EXPECT_EQ(
+      refusal(64, {"check", tiny_scene(), "--thread", "2"}),
+      "repose: error: '--thread' is no option of check (did you mean --threads?); see repose check --help\n");
   EXPECT_EQ(refusal(64, {"run", tiny_scene(), "--overwritten"}),
-            "repose: error: '--overwritten' is no option of run (did you mean --overwrite?); see repose run --help\n");
+            "repose: error: '--overwritten' is no option of run (did you mean --overwrite?); see repose run "
+            "--help\n");
 }
 
 TEST_F(CommandErrors, MisspeltKey_NamesPlaceAndNearest) {
