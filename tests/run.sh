@@ -61,7 +61,7 @@ sanitizers() {
   build asan
   run asan -LE long
   build tsan
-  run tsan -L unit -R 'Kernel|Scatter|Gather|BlockSort|State|ParticleEdit|Stepper|StepPlan|Determinism'
+  TSAN_OPTIONS="suppressions=$PWD/tests/threads.supp" run tsan -L unit -R 'Kernel|Scatter|Gather|BlockSort|State|ParticleEdit|Stepper|StepPlan|Determinism'
 }
 
 # What a step takes must not have grown; the baseline is of this preset's programs.

@@ -58,6 +58,7 @@ Result<void> FrameFiles::write(const Simulation& simulation, std::int64_t frame)
 Result<void> FrameFiles::finish() {
   if (!under_way_.valid()) return {};
   Result<WrittenFrame> done = under_way_.get();
+  failed_ = failed_ || !done;
   if (!done) return done.error();
   written_.push_back(std::move(*done));
   return {};

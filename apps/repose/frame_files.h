@@ -37,6 +37,8 @@ class FrameFiles {
   Result<void> write(const Simulation& simulation, std::int64_t frame);
   /// Waits until all is written. Errors as write().
   Result<void> finish();
+  /// Whether a file could not be written.
+  bool failed() const { return failed_; }
   /// Whether the files of a frame are there: a run that was killed may have saved its state before them.
   bool there(std::int64_t frame) const;
   /// What the files took that have become whole since the last call.
@@ -57,6 +59,7 @@ class FrameFiles {
   std::vector<std::string> vtp_;
   std::vector<double> vtp_times_;
   std::vector<WrittenFrame> written_;
+  bool failed_ = false;
   std::future<Result<WrittenFrame>> under_way_;  // the last, so that it ends before what it uses
 };
 

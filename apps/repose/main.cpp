@@ -8,10 +8,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <new>
 #include <thread>
 
+#include "apps/repose/base/memory_reserve.h"
 #include "apps/repose/command.h"
+#include "engine/base/caught.h"
 #include "engine/base/wording.h"
 
 namespace repose {
@@ -277,10 +278,6 @@ int main(int count, char** words) {
   } catch (const CLI::ParseError& error) {
     const int status = app.exit(error);
     if (status != 0) return static_cast<int>(ErrorKind::kUsage);
-  } catch (const std::bad_alloc&) {
-    return fail({ErrorKind::kMemory, "memory ran out", ""});
-  } catch (const std::exception& failure) {
-    return fail({ErrorKind::kInternal, failure.what(), ""});
   }
   return code != 0 ? code : told_all();
 }
@@ -289,5 +286,12 @@ int main(int count, char** words) {
 }  // namespace repose
 
 int main(int count, char** words) {
-  return repose::main(count, words);
+  try {
+    repose::keep_memory_reserve();
+    return repose::main(count, words);
+  } catch (const std::exception& failure) {
+    const bool memory = repose::is_of_memory(failure);
+    std::fprintf(stderr, "repose: error: %s\n", memory ? "memory ran out" : failure.what());
+    return static_cast<int>(memory ? repose::ErrorKind::kMemory : repose::ErrorKind::kInternal);
+  }
 }

@@ -1,5 +1,6 @@
 #include "apps/repose/output_folder.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 #include "apps/repose/base/json_file.h"
@@ -30,6 +32,19 @@ std::vector<std::string> missing_folders(const std::string& folder) {
     missing.push_back(path.string());
   }
   return missing;
+}
+
+/// The names of what lies in a folder. By the system's calls: std::filesystem ends the program where memory
+/// runs out while it goes on to the next.
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  const std::unique_ptr<DIR, int (*)(DIR*)> open(opendir(folder.c_str()), closedir);
+  while (open != nullptr) {
+    const dirent* const entry = readdir(open.get());
+    if (entry == nullptr) break;
+    names.emplace_back(entry->d_name);
+  }
+  return names;
 }
 
 /// Whether the file at `path` is still the one that is open: the run before removes its lock file when it ends.
@@ -137,8 +152,7 @@ std::vector<std::string> OutputFolder::left_by_a_run() const {
   const std::vector<std::string> names = this->names();
   std::vector<std::string> left;
   std::error_code failure;
-  for (const auto& entry : fs::directory_iterator(folder_, failure)) {
-    const std::string file = entry.path().filename().string();
+  for (const std::string& file : names_in(folder_)) {
     if (std::any_of(names.begin(), names.end(),
                     [&file](const std::string& name) { return is_run_file(file, name); }))
       left.push_back(folder_ + "/" + file);
@@ -168,15 +182,14 @@ Result<void> OutputFolder::clear() const {
 
 void OutputFolder::remove_temporaries() const {
   const std::vector<std::string> names = this->names();
-  std::error_code failure;
   for (const std::string& folder : {folder_, diagnostics()}) {
-    for (const auto& entry : fs::directory_iterator(folder, failure)) {
-      const std::string file = entry.path().filename().string(), whole = AtomicFile::final_name(file);
+    for (const std::string& file : names_in(folder)) {
+      const std::string whole = AtomicFile::final_name(file);
       const bool known = folder != folder_ ||
                          std::any_of(names.begin(), names.end(),
                                      [&whole](const std::string& name) { return is_run_file(whole, name); });
       std::error_code ignored;
-      if (!whole.empty() && known) fs::remove(entry.path(), ignored);
+      if (!whole.empty() && known) fs::remove(folder + "/" + file, ignored);
     }
   }
 }
@@ -191,9 +204,7 @@ std::string OutputFolder::frame(const std::string& kind, std::int64_t number,
 std::vector<std::int64_t> OutputFolder::checkpoints() const {
   std::vector<std::int64_t> frames;
   const std::string start = name_ + ".state.", end = ".checkpoint";
-  std::error_code failure;
-  for (const auto& entry : fs::directory_iterator(folder_, failure)) {
-    const std::string file = entry.path().filename().string();
+  for (const std::string& file : names_in(folder_)) {
     if (!file.starts_with(start) || !file.ends_with(end)) continue;
     frames.push_back(std::atoll(file.c_str() + start.size()));
   }

@@ -9,14 +9,17 @@
 #include <fstream>
 #include <iterator>
 
+#include "apps/repose/base/memory_reserve.h"
 #include "apps/repose/command.h"
 #include "apps/repose/frame_files.h"
+#include "apps/repose/frame_range.h"
 #include "apps/repose/measure.h"
 #include "apps/repose/output_folder.h"
 #include "apps/repose/progress.h"
 #include "apps/repose/run_log.h"
 #include "apps/repose/save_clock.h"
 #include "apps/repose/trouble.h"
+#include "engine/base/caught.h"
 #include "engine/io/atomic_file.h"
 #include "engine/reading/identity.h"
 
@@ -36,24 +39,6 @@ void on_signal(int signal) {
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct FrameRange {
-  std::int64_t first, last;
-};
-
-/// "A-B" writes frames A to B, "B" all up to B.
-Result<FrameRange> parse_frames(const std::string& text, std::int64_t frames) {
-  if (text.empty()) return FrameRange{1, frames};
-  long long first = 1, last = 0;
-  char rest = 0;
-  const bool range = std::sscanf(text.c_str(), "%lld-%lld%c", &first, &last, &rest) == 2;
-  const bool single = !range && (first = 1, std::sscanf(text.c_str(), "%lld%c", &last, &rest) == 1);
-  if ((!range && !single) || first < 1 || last < first) {
-    return Error{ErrorKind::kUsage, "'" + text + "' is not a range of frames; give A-B or B, counted from 1",
-                 "--frames"};
-  }
-  return FrameRange{first, last};
 }
 
 class Run {
@@ -84,7 +69,9 @@ class Run {
   int go_on();
   int interrupted();
   Result<void> save_here();
-  int stop(Error error, bool while_stepping);
+  std::string keep_state();
+  std::string leave_trouble(const Error& error);
+  int stop(Error error);
   void tell(const FrameReport& frame, const Json::Value& row) const;
   void tell_integrator() const;
   void tell_redone(const FrameReport& frame, Progress& progress) const;
@@ -173,7 +160,7 @@ Result<FrameReport> Run::advance(Progress& progress) {
           static_cast<double>(counters.frame) + counters.time_in_frame / clock.length(counters.frame), detail);
     }
     if (scene_.output.checkpoint && saves_.is_long_ago() && g_signal == 0) save_in_frame(progress);
-    return g_signal == 0;
+    return g_signal == 0 && !memory_gave_out();
   });
 }
 
@@ -270,7 +257,7 @@ Result<void> Run::save_here() {
 int Run::interrupted() {
   const int signal = g_signal;
   log_.end("interrupted");
-  if (auto written = finish_files(); !written) return stop(written.error(), false);
+  if (auto written = finish_files(); !written) return stop(written.error());
   if (auto saved = save_here(); !saved) return fail(saved.error());
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
   std::fprintf(stderr, "repose: interrupted; state saved in %s, the same command with --resume goes on\n",
@@ -278,25 +265,34 @@ int Run::interrupted() {
   return 128 + signal;
 }
 
-/// Where files could not be written, as where memory gave out, the state is good.
-int Run::stop(Error error, bool while_stepping) {
-  if (while_stepping) {
-    if (auto written = finish_files(); !written) fail(written.error());
+/// What an error's end leaves to go on from. A frame whose files or row are not whole is made again from the
+/// state before it, so none is saved that is newer.
+std::string Run::keep_state() {
+  if (auto written = finish_files(); !written) fail(written.error());
+  auto logged = log_.write(folder_.log());
+  if (!logged) fail(logged.error());
+  if (logged && !files_.failed() && log_.has_row(simulation_->counters().frame) && simulation_->sound()) {
+    auto saved = save_here();
+    if (!saved) return "; nor could the state be saved: " + saved.error().text();
+    return "; the state is saved in " + folder_.path() + ", from which --resume goes on";
   }
+  const std::vector<std::int64_t> frames = folder_.checkpoints();
+  return frames.empty() ? "; no state has been saved"
+                        : "; --resume goes on after frame " + std::to_string(frames.front());
+}
+
+std::string Run::leave_trouble(const Error& error) {
+  if (auto logged = log_.write(folder_.log()); !logged) fail(logged.error());
+  if (auto written = trouble_.write(error, scene_, *simulation_, folder_.diagnostics()); !written) {
+    fail(written.error());
+    return "";
+  }
+  return "; what led to it is in " + folder_.diagnostics();
+}
+
+int Run::stop(Error error) {
   log_.end(error.text());
-  if (error.kind != ErrorKind::kPhysics && simulation_->sound()) {
-    if (auto saved = save_here(); !saved)
-      error.message += "; nor could the state be saved: " + saved.error().text();
-    else
-      error.message += "; the state is saved in " + folder_.path() + ", from which --resume goes on";
-  }
-  if (error.kind == ErrorKind::kPhysics) {
-    if (auto written = trouble_.write(error, scene_, *simulation_, folder_.diagnostics()); !written)
-      fail(written.error());
-    else
-      error.message += "; what led to it is in " + folder_.diagnostics();
-  }
-  if (auto written = log_.write(folder_.log()); !written) fail(written.error());
+  error.message += error.kind == ErrorKind::kPhysics ? leave_trouble(error) : keep_state();
   return fail(error);
 }
 
@@ -304,10 +300,8 @@ int Run::stop(Error error, bool while_stepping) {
 int Run::go() {
   try {
     return go_on();
-  } catch (const std::bad_alloc&) {
-    return stop({ErrorKind::kMemory, "memory ran out", folder_.path()}, false);
   } catch (const std::exception& failure) {
-    return stop({ErrorKind::kInternal, failure.what(), folder_.path()}, false);
+    return stop(error_of(failure, folder_.path()));
   }
 }
 
@@ -329,15 +323,16 @@ int Run::go_on() {
     const std::int64_t before = simulation_->counters().frame;
     auto frame = advance(progress);
     if (!frame || g_signal != 0) progress.leave();
-    if (!frame) return stop(frame.error(), true);
+    if (!frame) return stop(frame.error());
     // A signal can come in the last step of a frame: the frame is then whole, and nobody else will write it.
     if (frame->frame > before) {
       tell_redone(*frame, progress);
-      if (auto written = write_frame(*frame); !written) return stop(written.error(), false);
+      if (auto written = write_frame(*frame); !written) return stop(written.error());
     }
+    if (memory_gave_out()) return stop({ErrorKind::kMemory, "memory ran out", folder_.path()});
     if (g_signal != 0 && simulation_->counters().frame < frames_.last) return interrupted();
   }
-  if (auto written = finish_files(); !written) return stop(written.error(), false);
+  if (auto written = finish_files(); !written) return stop(written.error());
   log_.end("complete");
   if (auto written = log_.write(folder_.log()); !written) return fail(written.error());
   progress.finish("done");

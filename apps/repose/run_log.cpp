@@ -212,11 +212,20 @@ void RunLog::add_written(const WrittenFrame& written) {
   }
 }
 
+const Json::Value* RunLog::row_of(std::int64_t frame) const {
+  for (const Json::Value& row : log_["frames"]) {
+    if (row["frame"].asInt64() == frame) return &row;
+  }
+  return nullptr;
+}
+
 bool RunLog::knows_files_of(std::int64_t frame) const {
-  const Json::Value& frames = log_["frames"];
-  return std::any_of(frames.begin(), frames.end(), [frame](const Json::Value& row) {
-    return row["frame"].asInt64() == frame && row.isMember("output_bytes");
-  });
+  const Json::Value* const row = row_of(frame);
+  return row != nullptr && row->isMember("output_bytes");
+}
+
+bool RunLog::has_row(std::int64_t frame) const {
+  return frame == 0 || row_of(frame) != nullptr;
 }
 
 Result<void> RunLog::write(const std::string& path) const {

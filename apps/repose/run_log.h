@@ -40,6 +40,8 @@ class RunLog {
   /// What the files of a frame took: seconds by kind, and their bytes, to the frame's row.
   void add_written(const WrittenFrame& written);
   bool knows_files_of(std::int64_t frame) const;
+  /// Whether a frame's figures are in the log; there are none of the start.
+  bool has_row(std::int64_t frame) const;
 
   /// The rows so far.
   const Json::Value& frames() const { return log_["frames"]; }
@@ -57,6 +59,7 @@ class RunLog {
  private:
   bool room_for_steps() const { return log_["steps"].size() < kMostStepRows; }
   void count_left_out(std::int64_t steps);
+  const Json::Value* row_of(std::int64_t frame) const;
 
   Json::Value log_;
   std::optional<StepRows> steps_;  // where the scene asks for them

@@ -1,7 +1,9 @@
 // Repose: the stream that computes the checksum in a VDB file.
 #include "engine/io/vdb_file.h"
 
+#include <cstdlib>
 #include <ios>
+#include <new>
 #include <streambuf>
 
 #include "engine/vdb/checksum.h"
@@ -35,12 +37,21 @@ class FileBuffer : public std::streambuf {
   Result<void> state_;
 };
 
+/// Blosc does not look whether it got what it asks for, so that is asked for before it. Throws bad_alloc.
+void ask_for_room() {
+  constexpr std::size_t kRoom = std::size_t{8} << 20;
+  void* const room = std::malloc(kRoom);
+  if (room == nullptr) throw std::bad_alloc();
+  std::free(room);
+}
+
 }  // namespace
 
 Result<void> stream_vdb(AtomicFile& file, const std::string& path,
                         const std::function<void(std::ostream&)>& write) {
   FileBuffer buffer(file);
   const Result<void> written = without_exceptions(path, "writing failed", [&]() -> Result<void> {
+    ask_for_room();
     std::ostream stream(&buffer);
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     write(stream);

@@ -4,10 +4,10 @@
 
 #include <exception>
 #include <functional>
-#include <new>
 #include <ostream>
 #include <string>
 
+#include "engine/base/caught.h"
 #include "engine/base/result.h"
 #include "engine/io/atomic_file.h"
 
@@ -23,9 +23,8 @@ template <class Work>
 auto without_exceptions(const std::string& path, const char* doing, Work&& work) -> decltype(work()) {
   try {
     return work();
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorKind::kMemory, std::string(doing) + ": out of memory", path};
   } catch (const std::exception& error) {
+    if (is_of_memory(error)) return Error{ErrorKind::kMemory, std::string(doing) + ": out of memory", path};
     return Error{ErrorKind::kIo, std::string(doing) + ": " + error.what(), path};
   }
 }

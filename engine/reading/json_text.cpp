@@ -15,6 +15,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "engine/base/caught.h"
 #include "engine/base/wording.h"
 
 namespace repose {
@@ -150,6 +151,7 @@ Json::Value parse_json(const SourceText& source, Complaints& complaints) {
   try {
     parsed = reader->parse(text.data(), text.data() + text.size(), &root, &report);
   } catch (const std::exception& exception) {
+    if (is_of_memory(exception)) throw std::bad_alloc();
     complaints.add(0, "", std::string("not JSON: ") + exception.what());
     return root;
   }

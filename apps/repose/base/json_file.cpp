@@ -5,6 +5,8 @@
 #include <exception>
 #include <fstream>
 
+#include "engine/base/caught.h"
+
 namespace repose {
 
 Result<Json::Value> read_json_file(const std::string& path) {
@@ -19,6 +21,7 @@ Result<Json::Value> read_json_file(const std::string& path) {
   try {
     if (Json::parseFromStream(builder, file, &json, &message)) return json;
   } catch (const std::exception& failure) {
+    if (is_of_memory(failure)) throw std::bad_alloc();
     message = failure.what();
   }
   message = message.substr(0, message.find_last_not_of(" \n") + 1);
