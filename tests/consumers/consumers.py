@@ -42,7 +42,7 @@ def small_scene(folder):
 
 def hash_of_command(scene, folder):
     out = os.path.join(folder, "run")
-    run([args.command, "run", scene, "--out", out, "--frames", f"1-{FRAMES}"])
+    run([args.command, "run", scene, "--overwrite", "--out", out, "--frames", f"1-{FRAMES}"])
     with open(os.path.join(out, "run.json")) as log:
         return json.load(log)["frames"][-1]["hash"]
 
@@ -70,7 +70,7 @@ def check_errors(program, **more):
 def windy_scene(folder):
     """The column in a wind from a VDB file, the fog of a frame of its own."""
     scene, out = small_scene(folder), os.path.join(folder, "fog")
-    run([args.command, "run", scene, "--out", out, "--frames", "1-1", "--set", "output.fog={}"])
+    run([args.command, "run", scene, "--overwrite", "--out", out, "--frames", "1-1", "--set", "output.fog={}"])
     shutil.copy(glob.glob(os.path.join(out, "*.fog.0001.vdb"))[0], os.path.join(folder, "wind.vdb"))
     path = os.path.join(folder, "windy.json")
     wind = '"force_fields": [{"name": "wind", "type": "wind_grid", "drag": 3, "file": "wind.vdb", "grid": "v"}],'
@@ -83,7 +83,7 @@ def check_grids(program, prefix, folder):
     """VDB files are read by the program that is installed, and by none where that is taken away."""
     scene = windy_scene(folder)
     out = os.path.join(folder, "windy")
-    run([args.command, "run", scene, "--out", out, "--frames", f"1-{FRAMES}"])
+    run([args.command, "run", scene, "--overwrite", "--out", out, "--frames", f"1-{FRAMES}"])
     with open(os.path.join(out, "run.json")) as log:
         expected = json.load(log)["frames"][-1]["hash"]
     found = hash_of([program, scene, str(FRAMES)])
