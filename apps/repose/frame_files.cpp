@@ -1,9 +1,11 @@
 #include "apps/repose/frame_files.h"
 
 #include <chrono>
+#include <exception>
 #include <filesystem>
-#include <new>
+#include <utility>
 
+#include "engine/base/caught.h"
 #include "engine/simulation/volumes.h"
 
 namespace repose {
@@ -42,16 +44,16 @@ Result<void> FrameFiles::write(const Simulation& simulation, std::int64_t frame)
   PointsWanted wanted{.attributes = {}, .mass = output.fog.given};
   if (output.vdb || output.ply || output.vtp) wanted.attributes = output.attributes;
   if (auto before = finish(); !before) return before;
-  const auto work = [this, points = simulation.points(wanted), frame,
-                     time = simulation.counters().time]() -> Result<WrittenFrame> {
+  auto work = [this, points = simulation.points(wanted), frame,
+               time = simulation.counters().time]() -> Result<WrittenFrame> {
     try {
       return write_all(points, frame, time);
-    } catch (const std::bad_alloc&) {
-      return Error{ErrorKind::kMemory, "memory ran out while a frame was written", folder_.path()};
+    } catch (const std::exception& failure) {
+      return error_of(failure, folder_.path());
     }
   };
   const auto when = threads_ > 1 ? std::launch::async : std::launch::deferred;
-  under_way_ = std::async(when, work);
+  under_way_ = std::async(when, std::move(work));  // the points are not there twice
   return threads_ > 1 ? Result<void>() : finish();
 }
 

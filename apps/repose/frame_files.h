@@ -7,8 +7,8 @@
 #include <json/value.h>
 
 #include <future>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/repose/output_folder.h"

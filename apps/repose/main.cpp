@@ -290,8 +290,6 @@ int main(int count, char** words) {
     repose::keep_memory_reserve();
     return repose::main(count, words);
   } catch (const std::exception& failure) {
-    const bool memory = repose::is_of_memory(failure);
-    std::fprintf(stderr, "repose: error: %s\n", memory ? "memory ran out" : failure.what());
-    return static_cast<int>(memory ? repose::ErrorKind::kMemory : repose::ErrorKind::kInternal);
+    return repose::fail(repose::error_of(failure, ""));
   }
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace repose {
@@ -41,6 +42,15 @@ std::string number_text(double value) {
   char buffer[32];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
   return {buffer, end};
+}
+
+std::string short_number(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  const bool whole = size >= 1e5 && size < 1e9 && value == std::floor(value);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", whole ? 9 : digits, value);
+  return text;
 }
 
 std::string range_text(const Quantity& quantity) {

@@ -11,6 +11,8 @@ namespace repose {
 
 /// The shortest decimal that reads back as `value`.
 std::string number_text(double value);
+/// So many significant digits, without zeros at the end: "0.0123", "1.5e-07"; "-" for what is no number.
+std::string short_number(double value, int digits = 3);
 
 /// "greater than 0 and at most 1"; empty where there is no bound.
 std::string range_text(const Quantity& quantity);

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "engine/base/wording.h"
@@ -15,13 +13,6 @@ namespace repose {
 namespace {
 
 constexpr std::size_t kSamples = 64;  // of a body that are followed down
-
-/// Three digits.
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 bool acts(const Scene& scene) {
   return scene.effect<Gravity>().on();
@@ -104,29 +95,28 @@ std::vector<std::string> unit_warnings(const Scene& scene) {
     const double density = material.elasticity().density;
     if (density < 10.0)
       warnings.push_back(start + "density " + number_text(density) + " is that of foam, in kg/m^3; " +
-                         short_text(1e3 * density) + " if it was in g/cm^3");
+                         short_number(1e3 * density) + " if it was in g/cm^3");
     if (density > 3e4)
       warnings.push_back(start + "density " + number_text(density) +
                          " is more than that of any metal; it is in kg/m^3");
     const FrictionalCone* const cone = cone_of(material.parameters);
     if (cone == nullptr || !(cone->friction_angle > 0.0) || cone->friction_angle >= 1.6) continue;
     warnings.push_back(start + "friction_angle " + number_text(cone->friction_angle) + " is in degrees; " +
-                       short_text(cone->friction_angle * 180.0 / M_PI) + " if it was in radians");
+                       short_number(cone->friction_angle * 180.0 / M_PI) + " if it was in radians");
   }
   for (const Collider& collider : scene.effect<Colliders>().list) {
     if (collider.friction < 5.0) continue;
     warnings.push_back("colliders." + collider.name + ": friction " + number_text(collider.friction) +
                        " is a coefficient, the tangent of an angle; " +
                        (collider.friction < 90.0
-                            ? short_text(std::tan(collider.friction * M_PI / 180.0)) + " if it was in degrees"
+                            ? short_number(std::tan(collider.friction * M_PI / 180.0)) + " if it was in degrees"
                             : "1 is rough"));
   }
   if (scene.time.integrator == Integrator::kImplicit &&
       scene.time.max_step * scene.time.frames_per_second >= 1.0)
     warnings.push_back(
         "time.max_step: implicit steps are as long as frames where nothing else bounds them, and lose motion "
-        "by their "
-        "length (docs/implicit.md); a tenth of a frame is a good first choice");
+        "by their length (docs/implicit.md); a tenth of a frame is a good first choice");
   return warnings;
 }
 
@@ -152,9 +142,9 @@ std::vector<std::string> softness_warnings(const Scene& scene, const State<Real>
     if (!(weight > kMost * elasticity.youngs_modulus)) continue;
     warnings.push_back("materials." + material.name + ": with youngs_modulus " +
                        number_text(elasticity.youngs_modulus) + " Pa '" + set.name +
-                       "' is pressed by its own weight, " + short_text(weight) + " Pa over " +
-                       short_text(high - low) + " m, to a part of its height; " + short_text(20.0 * weight) +
-                       " Pa would leave it 95 % of it");
+                       "' is pressed by its own weight, " + short_number(weight) + " Pa over " +
+                       short_number(high - low) + " m, to a part of its height; " +
+                       short_number(20.0 * weight) + " Pa would leave it 95 % of it");
   }
   return warnings;
 }

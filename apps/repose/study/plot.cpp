@@ -338,13 +338,6 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-std::string short_number(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  const double size = std::abs(value);
-  if (size >= 1e5 && size < 1e9 && value == std::floor(value)) return format("%.0f", value);
-  return format("%.*g", digits, value);
-}
-
 std::vector<double> ticks(double low, double high, bool log) {
   std::vector<double> places;
   if (!(high > low)) return {low};

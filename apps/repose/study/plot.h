@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/wording.h"
+
 namespace repose {
 
 struct Axis {
@@ -60,8 +62,6 @@ std::string svg(const Plot& plot);
 
 /// The text as SVG, HTML and XML have it.
 std::string escaped(const std::string& text);
-/// So many significant digits, without zeros at the end: "0.0123", "1.5e-07"; "-" for what is no number.
-std::string short_number(double value, int digits = 3);
 
 /// Places of ticks between two values.
 std::vector<double> ticks(double low, double high, bool log);
