@@ -63,5 +63,28 @@ TEST(Battery, Case28_WallHitAt100MetresPerSecond_IsNotEntered) {
   expect_stopped(result, "sand, implicit", {"time.integrator=implicit", "time.max_step=1e-4"});
 }
 
+/// A single layer of grains, which no other holds back: they stop where their stencil, of 1.5 cells, has left
+/// the last free node, which lies one cell above the highest that is held: that within half a cell of the
+/// surface.
+TEST(Battery, Case28_LoneGrains_StopWhereTheirStencilLeavesTheFreeNodes) {
+  battery::Case result(28, "lone grains at 3 m/s");
+  for (const double surface : {3.0, 3.49, 3.51, 3.99}) {  // cells above a node
+    const Scene scene =
+        scene_of(kImpact, {"bodies.block.particles_per_cell=1", "bodies.block.velocity=[0, -3, 0]",
+                           "bodies.block.shape.upper=[0.08, 0.07, 0.08]",
+                           "colliders.wall.shape.upper=[2, " + std::to_string(0.01 * surface) + ", 2]"});
+    const auto simulation = simulate(scene, 2);
+    double deepest = 0.0;
+    while (simulation->counters().time < 0.2) {
+      ASSERT_TRUE(run_steps(*simulation, 10));
+      deepest = std::max(deepest, simulation->diagnose().deepest);
+    }
+    char name[48];
+    std::snprintf(name, sizeof name, "surface at %.2f cells: deepest", surface);
+    const double free = std::round(surface) + 1.0;
+    result.at_most(name, deepest / 0.01, surface - (free - 1.5), "cells");
+  }
+}
+
 }  // namespace
 }  // namespace repose
