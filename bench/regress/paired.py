@@ -1,43 +1,72 @@
-"""Two programs, in turn: the ratio of the processor time of their steps, with an interval."""
+"""Two programs at once, on one core: the ratio of the processor time of their steps, with an interval.
+
+What a machine that others share does to a program changes from one second to the next. Two programs on one core take
+turns every few milliseconds, so that whatever it does counts for both: of equal programs the ratios scatter by 1 %,
+where runs one after the other scatter by 7."""
+import json
+import os
 import random
-import resource
 import statistics
 import subprocess
+import tempfile
 
 import measure
 
 WORSE = 1.03
-SCENE_STEPS = 450
-TURNS = 4  # of each program within a pair: a machine that others share changes from one second to the next
+SCENE_STEPS = 900
+THREADS = os.cpu_count()
+WALL_TIMES = 5
 
 
-def processor_time(words):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run(words, capture_output=True, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode != 0:
-        raise measure.CannotMeasure(f"{' '.join(words)}: exit code {done.returncode}\n{done.stderr[-2000:]}")
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+def command(program, case, steps, threads=1):
+    words = [program, "bench", *measure.arguments(case), "--steps", str(steps)]
+    words[words.index("--threads") + 1] = str(threads)
+    return words
+
+
+def processor_times(commands, core):
+    """Of each of them, s; all run at once, on one core."""
+    running, seconds = {}, {}
+    for words in commands:
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   preexec_fn=lambda: os.sched_setaffinity(0, {core}))
+        running[process.pid] = process
+    for process in running.values():
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        seconds[process.pid] = used.ru_utime + used.ru_stime
+    for process in running.values():
+        said = process.stderr.read()
+        process.stderr.close()
+        if process.returncode != 0:
+            raise measure.CannotMeasure(f"{' '.join(process.args)}: exit code {process.returncode}\n{said.decode()[-2000:]}")
+    return list(seconds.values())
 
 
 def ratio(base, head, case, pairs, seed=1):
-    """The median of head / base over pairs in shuffled order, and its 95 % interval by the bootstrap. Each time is of
-    steps alone: a run of few steps is taken from one of many."""
+    """The median of head / base over pairs, either of them first, and its 95 % interval by the bootstrap. Each time is
+    of steps alone: a run of few steps is taken from one of many."""
+    core = max(os.sched_getaffinity(0))
     shuffle = random.Random(seed)
-
-    def steps_of(program):
-        few, many = (processor_time([program, "bench", *measure.arguments(case), "--steps", str(steps)])
-                     for steps in (1, SCENE_STEPS))
-        return max(many - few, 1e-9)
-
     ratios = []
-    programs = (base, head)
     for pair in range(pairs + 1):  # the first only warms up
-        seconds = [0.0, 0.0]
-        for _ in range(TURNS if pair > 0 else 1):
-            for which in shuffle.sample((0, 1), 2):
-                seconds[which] += steps_of(programs[which])
+        both = [base, head] if pair % 2 else [head, base]
+        few, many = (processor_times([command(program, case, steps) for program in both], core) for steps in (1, SCENE_STEPS))
+        first, second = (max(m - f, 1e-9) for m, f in zip(many, few))
         if pair > 0:
-            ratios.append(seconds[1] / seconds[0])
+            ratios.append(second / first if pair % 2 else first / second)
     medians = sorted(statistics.median(shuffle.choices(ratios, k=len(ratios))) for _ in range(2000))
     return statistics.median(ratios), medians[50], medians[1949]
+
+
+def wall_times(programs, case):
+    """Of each program, ns per particle and step on one thread and on all, medians of runs in turn: told, not judged."""
+    found = {(program, threads): [] for program in programs for threads in (1, THREADS)}
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "bench.json")
+        for _ in range(WALL_TIMES):
+            for (program, threads), times in found.items():
+                measure.run(command(program, case, SCENE_STEPS // 4, threads) + ["--json", path])
+                with open(path) as file:
+                    times.append(json.load(file)["ns_per_particle_step"])
+    return [[statistics.median(found[program, threads]) for threads in (1, THREADS)] for program in programs]

@@ -65,14 +65,18 @@ def gate(options):
 
 def ab(options):
     worse = False
-    print("| case | median of HEAD / BASE | 95 % | verdict |\n| --- | --- | --- | --- |")
+    print("| case | median of HEAD / BASE | 95 % | verdict | wall time, HEAD / BASE, on 1 and on all threads | scaling, BASE and HEAD |")
+    print("| --- | --- | --- | --- | --- | --- |")
     for case in cases.CASES:
         if not (case.name in options.only if options.only else case.quick):
             continue
         median, low, high = paired.ratio(options.base, options.head, case, options.pairs)
         slower = low > paired.WORSE
         worse = worse or slower
-        print(f"| {case.name} | {median:.4f} | {low:.4f} to {high:.4f} | {'slower' if slower else 'no slower'} |", flush=True)
+        base, head = paired.wall_times((options.base, options.head), case)
+        walls, scaling = [h / b for h, b in zip(head, base)], [one / all_threads for one, all_threads in (base, head)]
+        print(f"| {case.name} | {median:.4f} | {low:.4f} to {high:.4f} | {'slower' if slower else 'no slower'} "
+              f"| {walls[0]:.2f}, {walls[1]:.2f} | {scaling[0]:.2f}, {scaling[1]:.2f} on {paired.THREADS} |", flush=True)
     return 1 if worse else 0
 
 

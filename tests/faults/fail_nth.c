@@ -1,11 +1,13 @@
 /* Repose tests: the Nth call of a kind fails, as it does on a full disk or without memory. Loaded before all other
  * libraries (LD_PRELOAD). FAIL_NTH="KIND N" with KIND write, sync, rename, create or allocate; with N 0 none fails.
  * FAIL_NTH_COUNT names a file that then tells how many calls there were. FAIL_NTH_FOLDER: of files, only those whose
- * path has it. An allocation that fails lets all later ones through; those of libblosc, which uses what it gets without
- * a look, never fail. */
+ * path has it. KIND site: the first allocation fails that is asked for from the place N, which stands for the callers;
+ * the file then lists all places. Calls count from where main begins. An allocation that fails lets all later ones through; those of libblosc, which uses
+ * what it gets without a look, never fail. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -14,8 +16,8 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WRITE, SYNC, RENAME, CREATE, ALLOCATE, KINDS };
-static const char* const kNames[KINDS] = {"write", "sync", "rename", "create", "allocate"};
+enum { WRITE, SYNC, RENAME, CREATE, ALLOCATE, SITE, KINDS };
+static const char* const kNames[KINDS] = {"write", "sync", "rename", "create", "allocate", "site"};
 
 static int chosen = -1;
 static long fails = 0;
@@ -28,6 +30,10 @@ static void* (*real_calloc)(size_t, size_t);
 static void* (*real_realloc)(void*, size_t);
 static void* (*real_aligned_alloc)(size_t, size_t);
 static int (*real_posix_memalign)(void**, size_t, size_t);
+
+/* Places that asked for memory, by a number that is the same in every run. */
+enum { SITES = 1 << 16, DEPTH = 4 };
+static atomic_long sites[SITES], seen[SITES]; /* seen: the same by addresses of this run, which is quicker to tell */
 
 /* dlsym itself may ask for a little. */
 static char early[65536];
@@ -64,7 +70,20 @@ __attribute__((constructor)) static void begin(void) {
   if (within != NULL) snprintf(folder, sizeof folder, "%s", within);
   if (to != NULL) snprintf(count_path, sizeof count_path, "%s", to);
   unsetenv("LD_PRELOAD"); /* programs that this one starts do not fail */
+}
+
+/* What libraries' own objects ask for before main, nobody can answer for. */
+static int (*real_main)(int, char**, char**);
+static int begin_main(int count, char** words, char** environment) {
   atomic_store(&ready, 1);
+  return real_main(count, words, environment);
+}
+int __libc_start_main(int (*main)(int, char**, char**), int count, char** words, void (*init)(void), void (*fini)(void),
+                      void (*linker_fini)(void), void* stack) {
+  real_main = main;
+  int (*start)(int (*)(int, char**, char**), int, char**, void (*)(void), void (*)(void), void (*)(void), void*) =
+      (__typeof__(start))dlsym(RTLD_NEXT, "__libc_start_main");
+  return start(begin_main, count, words, init, fini, linker_fini, stack);
 }
 
 __attribute__((destructor)) static void end(void) {
@@ -72,7 +91,13 @@ __attribute__((destructor)) static void end(void) {
   if (count_path[0] == 0) return;
   FILE* const file = fopen(count_path, "w");
   if (file == NULL) return;
-  fprintf(file, "%ld\n", atomic_load(&counted));
+  if (chosen == SITE) {
+    for (int k = 0; k < SITES; ++k) {
+      if (atomic_load(&sites[k]) != 0) fprintf(file, "%ld\n", atomic_load(&sites[k]));
+    }
+  } else {
+    fprintf(file, "%ld\n", atomic_load(&counted));
+  }
   fclose(file);
 }
 
@@ -84,6 +109,47 @@ static int is_of_blosc(const void* caller) {
 static int fail_now(int kind) {
   if (kind != chosen || atomic_load(&ready) == 0) return 0;
   return atomic_fetch_add(&counted, 1) + 1 == fails;
+}
+
+/* Whether a number comes into a table for the first time. */
+static int is_new(atomic_long* table, long number) {
+  for (unsigned long at = (unsigned long)number % SITES;; at = (at + 1) % SITES) {
+    long there = 0;
+    if (atomic_compare_exchange_strong(&table[at], &there, number)) return 1;
+    if (there == number) return 0;
+  }
+}
+
+static long mix(long place, unsigned long more) {
+  return (long)(((unsigned long)place ^ more) * 1099511628211UL) | 1;
+}
+
+/* To tell who calls may itself ask for memory. */
+static int fails_by_place(void) {
+  static _Thread_local int within;
+  static atomic_int done;
+  if (within || atomic_load(&done) || atomic_load(&ready) == 0) return 0;
+  within = 1;
+  void* callers[DEPTH + 3];
+  const int depth = backtrace(callers, DEPTH + 3);
+  long here = 1, place = 1;
+  for (int k = 3; k < depth; ++k) here = mix(here, (unsigned long)callers[k]); /* beyond this, its caller and malloc */
+  int fail = 0;
+  if (is_new(seen, here)) {
+    for (int k = 3; k < depth; ++k) {
+      Dl_info info;
+      place = mix(place, (unsigned long)callers[k] - (dladdr(callers[k], &info) != 0 ? (unsigned long)info.dli_fbase : 0));
+    }
+    fail = is_new(sites, place) && place == fails;
+    if (fail) atomic_store(&done, 1);
+  }
+  within = 0;
+  return fail;
+}
+
+static int allocation_fails(const void* caller) {
+  if ((chosen != ALLOCATE && chosen != SITE) || is_of_blosc(caller)) return 0;
+  return chosen == SITE ? fails_by_place() : fail_now(ALLOCATE);
 }
 
 static int within_folder(int descriptor) {
@@ -141,12 +207,12 @@ int open(const char* path, int flags, ...) {
 void* malloc(size_t bytes) {
   find_allocators();
   if (real_malloc == NULL) return early_room(bytes);
-  return chosen == ALLOCATE && !is_of_blosc(__builtin_return_address(0)) && fail_now(ALLOCATE) ? (errno = ENOMEM, NULL) : real_malloc(bytes);
+  return allocation_fails(__builtin_return_address(0)) ? (errno = ENOMEM, NULL) : real_malloc(bytes);
 }
 void* calloc(size_t count, size_t bytes) {
   find_allocators();
   if (real_malloc == NULL) return early_room(count * bytes);
-  return chosen == ALLOCATE && !is_of_blosc(__builtin_return_address(0)) && fail_now(ALLOCATE) ? (errno = ENOMEM, NULL) : real_calloc(count, bytes);
+  return allocation_fails(__builtin_return_address(0)) ? (errno = ENOMEM, NULL) : real_calloc(count, bytes);
 }
 void* realloc(void* old, size_t bytes) {
   find_allocators();
@@ -155,15 +221,15 @@ void* realloc(void* old, size_t bytes) {
     if (old != NULL && room != NULL) memcpy(room, old, bytes);
     return room;
   }
-  return chosen == ALLOCATE && !is_of_blosc(__builtin_return_address(0)) && fail_now(ALLOCATE) ? (errno = ENOMEM, NULL) : real_realloc(old, bytes);
+  return allocation_fails(__builtin_return_address(0)) ? (errno = ENOMEM, NULL) : real_realloc(old, bytes);
 }
 void* aligned_alloc(size_t alignment, size_t bytes) {
   find_allocators();
-  return chosen == ALLOCATE && !is_of_blosc(__builtin_return_address(0)) && fail_now(ALLOCATE) ? (errno = ENOMEM, NULL) : real_aligned_alloc(alignment, bytes);
+  return allocation_fails(__builtin_return_address(0)) ? (errno = ENOMEM, NULL) : real_aligned_alloc(alignment, bytes);
 }
 int posix_memalign(void** room, size_t alignment, size_t bytes) {
   find_allocators();
-  return chosen == ALLOCATE && !is_of_blosc(__builtin_return_address(0)) && fail_now(ALLOCATE) ? ENOMEM : real_posix_memalign(room, alignment, bytes);
+  return allocation_fails(__builtin_return_address(0)) ? ENOMEM : real_posix_memalign(room, alignment, bytes);
 }
 void free(void* room) {
   REAL(free);

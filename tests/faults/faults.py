@@ -2,7 +2,8 @@
 fails, the run ends with the right code and words, leaves no torn file and no temporary, and goes on to the same bits.
 
 faults.py PROGRAM LIBRARY [KIND...] [--every N] [--random N] [--jobs N]
-  KIND      write, sync, rename, create, allocate; all if none is named
+  KIND      write, sync, rename, create, allocate, site; all if none is named. site: of allocations the first from each
+            place of the program, a place being who calls, and who calls that, four calls deep
   --every   only every Nth call
   --random  of allocations: so many of them, drawn with a fixed seed, in place of every Nth
 """
@@ -27,8 +28,8 @@ SCENE = {
     "probes": [{"name": "all", "type": "energy"}],
     "colliders": [{"name": "ground", "shape": {"type": "plane"}, "friction": 0.4}],
 }
-KINDS = ("write", "sync", "rename", "create", "allocate")
-CODES = {"allocate": (78,)}  # of an end that is told; others are errors of output
+KINDS = ("write", "sync", "rename", "create", "allocate", "site")
+CODES = {"allocate": (78,), "site": (78,)}  # of an end that is told; others are errors of output
 OF_OUTPUT = (73, 74)
 LIMIT = 60  # s
 
@@ -114,21 +115,21 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         scene = os.path.join(folder, "tiny.json")
         pathlib.Path(scene).write_text(json.dumps(SCENE))
-        counts = {}
+        faults = {}
         for kind in options.kinds or KINDS:
             trial = Trial(options, scene, os.path.join(folder, kind))
             trial.folder.mkdir()
             done = trial.run(fail=f"{kind} 0")
             if done.returncode != 0:
                 sys.exit(f"without a fault: {done.stderr}")
-            counts[kind] = int((trial.folder / "count").read_text())
+            told = [int(line) for line in (trial.folder / "count").read_text().split()]
+            faults[kind] = sorted(told) if kind == "site" else range(1, told[0] + 1)
             reference = {"contents": trial.contents(), "hash": trial.last_hash()}
         jobs = []
-        for kind, count in counts.items():
-            numbers = range(1, count + 1, options.every)
+        for kind, numbers in faults.items():
             if kind == "allocate" and options.random:
-                numbers = sorted(random.Random(1).sample(range(1, count + 1), min(count, options.random)))
-            jobs += [(kind, number) for number in numbers]
+                numbers = sorted(random.Random(1).sample(numbers, min(len(numbers), options.random)))
+            jobs += [(kind, number) for number in numbers[::options.every]]
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             waiting = [pool.submit(attempt, options, scene, reference, *job) for job in jobs]
             for done in waiting:
@@ -140,7 +141,8 @@ def main():
                 if text:
                     failures.append(text)
                     print(text, flush=True)
-    if not tried or any(count == 0 for count in counts.values()):
+    counts = {kind: len(numbers) for kind, numbers in faults.items()}
+    if not tried or not all(counts.values()):
         sys.exit(f"nothing was counted: {counts}")
     print(f"{tried} faults of {counts}: {len(failures)} wrong")
     sys.exit(1 if failures else 0)

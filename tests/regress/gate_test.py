@@ -107,6 +107,53 @@ class Gate(unittest.TestCase):
         self.assertEqual(baselines.allowed(baselines.Figure("exact", "1", [1.0] * 9)), 0.0)
 
 
+# A program whose steps take a known processor time.
+BURNS = """#!{python}
+import sys, time
+if "--json" in sys.argv:
+    open(sys.argv[sys.argv.index("--json") + 1], "w").write('{{"ns_per_particle_step": {step}}}')
+elif {fails}:
+    sys.exit("no scene")
+else:
+    steps = int(sys.argv[sys.argv.index("--steps") + 1])
+    end = time.process_time() + {step} * 1e-4 * steps
+    while time.process_time() < end:
+        pass
+"""
+
+
+class Pairs(unittest.TestCase):
+    def call(self, base, head, fails=False):
+        """Of programs whose steps take so much."""
+        told = io.StringIO()
+        with tempfile.TemporaryDirectory() as folder:
+            programs = []
+            for name, step in (("base", base), ("head", head)):
+                programs.append(os.path.join(folder, name))
+                pathlib.Path(programs[-1]).write_text(BURNS.format(python=sys.executable, step=step, fails=fails))
+                os.chmod(programs[-1], 0o755)
+            command = ["regress", "ab", *programs, "--only", "bare", "--pairs", "6"]
+            with unittest.mock.patch.object(sys, "argv", command), contextlib.redirect_stdout(told), \
+                    contextlib.redirect_stderr(told):
+                return regress.main(), told.getvalue()
+
+    def test_what_is_slower(self):
+        code, told = self.call(1.0, 1.2)
+        self.assertEqual(code, 1, told)
+        self.assertRegex(told, r"\| bare \| 1\.\d+ \| .* \| slower \| 1\.20, 1\.20 \| 1\.00, 1\.00 on ")
+
+    def test_what_is_faster_or_the_same(self):
+        for head in (1.0, 0.8):
+            code, told = self.call(1.0, head)
+            self.assertEqual(code, 0, told)
+            self.assertIn("| no slower |", told)
+
+    def test_what_fails_is_not_measured(self):
+        code, told = self.call(1.0, 1.0, True)
+        self.assertEqual(code, 2)
+        self.assertIn("no scene", told)
+
+
 class Callgrind(unittest.TestCase):
     def test_what_is_called_counts_for_itself(self):
         with tempfile.NamedTemporaryFile("w", suffix=".callgrind") as file:
