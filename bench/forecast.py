@@ -94,7 +94,7 @@ def blocks_of(repose, name, frame):
     with tempfile.TemporaryDirectory() as out:
         run([repose, "run", scene_path(name), "--frames", f"1-{frame}", "--out", f"{out}/run", "--quiet", "--set",
              "output.ply=true", "--set", "output.vdb=false", "--set", "output.checkpoint=false"])
-        spacing = json.loads((pathlib.Path(out) / "run/run.json").read_text())["scene"]["grid"]["spacing"]
+        spacing = json.loads((pathlib.Path(out) / "run/run.json").read_text())["scene"]["spacing"]
         last = sorted((pathlib.Path(out) / "run").glob("*.ply"))[-1]
         blocks, counts = numpy.unique(numpy.floor(read_points(last) / (BLOCK_CELLS * spacing)).astype(int), axis=0,
                                       return_counts=True)

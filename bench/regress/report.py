@@ -2,6 +2,7 @@
 import html
 
 import baselines
+import sources
 
 
 def moved(before, now, most=8):
@@ -14,10 +15,12 @@ def moved(before, now, most=8):
     return sorted(rows, key=lambda row: -abs(row[0]))[:most]
 
 
-def lines_of(function, lines, most=5):
-    """The lines of a function that take most, where the program knows its lines."""
+def lines_of(function, lines, changed, most=5):
+    """The lines of a function that take most, those that are other than when it was accepted before all others; where
+    the program knows its lines."""
     own = [(count, name.rsplit(" in ", 1)[0]) for name, count in lines.items() if name.endswith(" in " + function)]
-    own = [(count, name) for count, name in own if not name.endswith(":0") and not name.startswith("?")]
+    own = [(sources.is_changed(name, changed), count, name) for count, name in own
+           if not name.endswith(":0") and not name.startswith("?")]
     return sorted(own, reverse=True)[:most]
 
 
@@ -29,12 +32,16 @@ def figure_row(row):
 
 def text(rows, where, lines, folder):
     told = [figure_row(row) for row in rows if row[0] != "as before"]
+    changed = sources.changed_since_accepted(folder) if told else {}
     for case in sorted({row[1].split(": ")[0] for row in rows if row[0] in ("worse", "better") and "instructions" in row[1]}):
         told.append(f"\n{case}: instructions per step, by function")
         for count, function in moved(baselines.read_functions(folder, case), where.get(case, {})):
             told.append(f"  {count:+12.0f}  {function}")
-            for of_line, place in lines_of(function, lines.get(case, {})):
-                told.append(f"                  {of_line:12.0f} at {place}")
+            for is_new, of_line, place in lines_of(function, lines.get(case, {}), changed) if count > 0 else ():
+                told.append(f"                  {of_line:12.0f} at {place}" + (", which has changed" if is_new else ""))
+    if changed:
+        told.append("\nchanged since figures were accepted:")
+        told += [f"  {path}:{sources.spans(lines_there)}" for path, lines_there in sorted(changed.items())]
     same = sum(row[0] == "as before" for row in rows)
     told.append(f"\n{same} of {len(rows)} figures as before, {sum(row[0] == 'worse' for row in rows)} worse, "
                 f"{sum(row[0] == 'better' for row in rows)} better, {sum(row[0] in ('new', 'gone') for row in rows)} new or gone")

@@ -12,6 +12,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench/regr
 import baselines
 import measure
 import regress
+import report
+import sources
 
 BARE = {"bare: instructions per step": ("count", 1000000), "bare: heap allocations per step": ("exact", 0),
         "bare: first-level misses per step": ("misses", 1000), "study bar: period": ("value", 2.0),
@@ -132,7 +134,7 @@ class Pairs(unittest.TestCase):
                 programs.append(os.path.join(folder, name))
                 pathlib.Path(programs[-1]).write_text(BURNS.format(python=sys.executable, step=step, fails=fails))
                 os.chmod(programs[-1], 0o755)
-            command = ["regress", "ab", *programs, "--only", "bare", "--pairs", "6"]
+            command = ["regress", "ab", *programs, "--only", "bare", "--pairs", "3"]
             with unittest.mock.patch.object(sys, "argv", command), contextlib.redirect_stdout(told), \
                     contextlib.redirect_stderr(told):
                 return regress.main(), told.getvalue()
@@ -152,6 +154,25 @@ class Pairs(unittest.TestCase):
         code, told = self.call(1.0, 1.0, True)
         self.assertEqual(code, 2)
         self.assertIn("no scene", told)
+
+
+class Sources(unittest.TestCase):
+    DIFFERENCE = ("--- a/kernels/pass/particles.cpp\n+++ b/kernels/pass/particles.cpp\n@@ -87 +87,2 @@ void advance\n-old\n+new\n"
+                  "+newer\n@@ -120,3 +121,0 @@\n-gone\n--- a/gone.cpp\n+++ /dev/null\n@@ -1,2 +0,0 @@\n-x\n")
+
+    def test_which_lines_have_changed(self):
+        changed = sources.of_difference(self.DIFFERENCE)
+        self.assertEqual(changed, {"kernels/pass/particles.cpp": {87, 88, 121}})
+        self.assertEqual(sources.spans(changed["kernels/pass/particles.cpp"]), "87 to 88, 121")
+        self.assertTrue(sources.is_changed("../../kernels/pass/particles.cpp:88", changed))
+        self.assertTrue(sources.is_changed("/somewhere/kernels/pass/particles.cpp:87", changed))
+        self.assertFalse(sources.is_changed("kernels/pass/particles.cpp:89", changed))
+        self.assertFalse(sources.is_changed("other_kernels/pass/particles.cpp.h:88", changed))
+
+    def test_they_are_told_first(self):
+        lines = {"a.cpp:5 in advance": 9000, "kernels/pass/particles.cpp:88 in advance": 10, "b.cpp:1 in gather": 99999}
+        found = report.lines_of("advance", lines, sources.of_difference(self.DIFFERENCE))
+        self.assertEqual(found, [(True, 10, "kernels/pass/particles.cpp:88"), (False, 9000, "a.cpp:5")])
 
 
 class Callgrind(unittest.TestCase):
