@@ -12,6 +12,7 @@
 #include "apps/repose/render/film.h"
 #include "apps/repose/run_log.h"
 #include "apps/repose/scene_picture.h"
+#include "engine/base/input_file.h"
 #include "engine/compiler/compiler.h"
 #include "engine/effect/solid.h"
 #include "engine/io/point_cloud.h"
@@ -103,7 +104,7 @@ Result<Shoot> prepare(const MovieArguments& arguments) {
   }
   auto log = read_run_log(arguments.folder);
   if (!log) return log.error();
-  std::ifstream file(arguments.folder + "/scene.json");
+  std::ifstream file = open_input(arguments.folder + "/scene.json");
   if (!file) return Error{ErrorKind::kNoInput, "cannot be read", arguments.folder + "/scene.json"};
   std::stringstream text;
   text << file.rdbuf();

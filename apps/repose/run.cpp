@@ -20,6 +20,7 @@
 #include "apps/repose/save_clock.h"
 #include "apps/repose/trouble.h"
 #include "engine/base/caught.h"
+#include "engine/base/input_file.h"
 #include "engine/io/atomic_file.h"
 #include "engine/reading/identity.h"
 
@@ -37,7 +38,7 @@ void on_signal(int signal) {
 }
 
 std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 

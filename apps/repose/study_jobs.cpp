@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <optional>
 
 #include "apps/repose/study/plot.h"
+#include "engine/base/input_file.h"
 #include "engine/base/wording.h"
 #include "engine/compiler/figures.h"
 #include "engine/reading/study_reader.h"
@@ -17,9 +21,49 @@ Figure figure(const std::string& name, FigureKind kind) {
   return {name, std::move(kind)};
 }
 
+/// Fingerprint of what a file holds now; of none where it cannot be read, which the run then tells.
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file = open_input(path);
+  return fingerprint(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
+/// The files that a name stands for: where it has a row of "#", those with anything in its place.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& named) {
+  const std::string name = named.filename().string();
+  const std::size_t begin = name.find('#');
+  if (begin == std::string::npos) return {named};
+  const std::string before = name.substr(0, begin),
+                    after = name.substr(std::min(name.find_first_not_of('#', begin), name.size()));
+  std::vector<std::filesystem::path> files;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(named.parent_path(), none)) {
+    const std::string own = entry.path().filename().string();
+    if (own.size() > before.size() + after.size() && own.starts_with(before) && own.ends_with(after))
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Of all files that a scene names, with their names: a mesh that was changed makes other runs of it. Each is
+/// read once, however many points have it.
+std::string contents_of_files(const Scene& scene) {
+  static std::map<std::string, std::string> known;
+  std::string all;
+  for (const std::string& file : scene.files) {
+    const auto [entry, is_new] = known.try_emplace((std::filesystem::path(scene.folder) / file).string());
+    if (is_new) {
+      for (const auto& path : files_of(entry->first))
+        entry->second += "|" + path.filename().string() + " " + contents(path);
+    }
+    all += entry->second;
+  }
+  return all;
+}
+
 /// What a run depends on, beside its build and its threads.
 std::string run_text(const Scene& scene) {
-  return scene.identity + "|" + std::to_string(scene.time.frames) + "|" +
+  return scene.identity + contents_of_files(scene) + "|" + std::to_string(scene.time.frames) + "|" +
          std::to_string(static_cast<int>(scene.time.energy_alarm)) + "|" + value_at(scene, "study.figures");
 }
 
@@ -261,7 +305,7 @@ std::vector<Figure> figures_of(const StudyDescription& study, const Scene& scene
 
 const std::string& program_build() {
   static const std::string build = [] {
-    std::ifstream program("/proc/self/exe", std::ios::binary | std::ios::ate);
+    std::ifstream program = open_input("/proc/self/exe", std::ios::ate);
     std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(0, program.tellg())), '\0');
     program.seekg(0);
     program.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

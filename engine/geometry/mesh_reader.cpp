@@ -1,6 +1,8 @@
 // Repose: the bytes of a mesh file, and which of the two formats they are in.
 #include "engine/geometry/mesh_reader.h"
 
+#include "engine/base/input_file.h"
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -13,7 +15,7 @@ namespace fs = std::filesystem;
 
 Result<std::string> read_bytes(const std::string& path) {
   const Error unreadable{ErrorKind::kNoInput, "the mesh file cannot be read", path};
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  std::ifstream stream = open_input(path, std::ios::ate);
   if (!stream) return unreadable;
   const std::streamoff size = stream.tellg();
   if (size < 0) return unreadable;

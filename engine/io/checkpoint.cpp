@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/base/input_file.h"
 #include "engine/io/atomic_file.h"
 
 namespace repose {
@@ -139,7 +140,7 @@ class ChunkReader {
 };
 
 Result<std::ifstream> open_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is the path right?", path};
   return file;
 }

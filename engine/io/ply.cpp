@@ -14,6 +14,7 @@
 #include <sstream>
 #include <utility>
 
+#include "engine/base/input_file.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/point_layout.h"
 
@@ -263,7 +264,7 @@ Result<void> write_ply(const PointCloud& points, const std::string& path) {
 }
 
 Result<PointCloud> read_ply(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   if (!file) return Error{ErrorKind::kNoInput, std::string("cannot be opened: ") + std::strerror(errno), path};
   Result<Header> header = read_header(file, path);
   if (!header) return header.error();

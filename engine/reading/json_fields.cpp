@@ -223,7 +223,9 @@ void JsonFields::text(const char* key, std::string& value, const char* meaning, 
 void JsonFields::file(const char* key, std::string& value, const char* meaning, bool required) {
   text(key, value, meaning, required);
   const Json::Value& found = std::as_const(object_)[key];
-  if (reading_.allow_outside_paths || !found.isString()) return;
+  if (!found.isString()) return;
+  reading_.files.push_back(found.asString());
+  if (reading_.allow_outside_paths) return;
   const std::filesystem::path normal = std::filesystem::path(found.asString()).lexically_normal();
   const bool leaves = normal.is_absolute() || (!normal.empty() && *normal.begin() == "..");
   if (leaves)

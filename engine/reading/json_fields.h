@@ -20,6 +20,7 @@ struct Reading {
   Expressions& expressions;
   Complaints& complaints;
   bool allow_outside_paths = false;
+  std::vector<std::string> files = {};  ///< that the scene names, as it has them
 };
 
 /// Reads one JSON object. Members whose key is missing or wrong keep the value that they had.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/base/input_file.h"
 #include "engine/base/wording.h"
 #include "engine/reading/complaints.h"
 #include "engine/reading/identity.h"
@@ -31,7 +32,7 @@ Result<std::string> read_text(const std::string& path) {
     return Error{ErrorKind::kNoInput,
                  exists ? "not a file; give a scene file" : "no such file; give a scene file", path};
   }
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   if (!file) return Error{ErrorKind::kNoInput, "cannot be opened; it must be readable", path};
   // One byte more than allowed tells a file that is too large from one that just fits.
   std::string text(kMostBytes + 1, '\0');
@@ -86,6 +87,7 @@ Result<Scene> read_scene_text(const std::string& text, const std::string& name, 
 
   find_places(root, "", source, scene.places.of_key);
   scene.folder = folder;
+  scene.files = std::move(reading.files);
   scene.identity = identity_text(root);
   scene.canonical = compact_json(root);
   return scene;

@@ -34,11 +34,11 @@ struct PeriodicAxis {
 struct GridDescription {
   double spacing = 0.01;  ///< dx, m
   Precision precision = Precision::kSingle;
-  int stencil = 0;               ///< position in Stencils
-  int transfer = 0;              ///< position in Transfers
-  double velocity_loss = 10.0;   ///< 1/s, of velocity that particles have for themselves (flip, aflip)
+  int stencil = 0;                      ///< position in Stencils
+  int transfer = 0;                     ///< position in Transfers
+  double velocity_loss = 10.0;          ///< 1/s, of velocity that particles have for themselves (flip, aflip)
   std::optional<double> kept_velocity;  ///< share of it that is kept per step, in its place
-  double kept_stretching = 0.0;  ///< share of stretching that rpic keeps
+  double kept_stretching = 0.0;         ///< share of stretching that rpic keeps
   Advection advection = Advection::kAfterFriction;
   std::array<std::int64_t, 3> origin_cells{
       0, 0, 0};                     ///< where the scene's origin lies in the lattice; multiples of 8
@@ -157,7 +157,8 @@ struct Scene {
   std::string where(const std::string& key) const { return places.where(key); }
 
   Places places;
-  std::string folder;     ///< where relative paths start
+  std::string folder;              ///< where relative paths start
+  std::vector<std::string> files;  ///< that it names, as it has them: meshes, grids; a row of "#" for a number
   std::string identity;   ///< what a state of it depends on (engine/reading/identity.h); what is hashed
   std::string canonical;  ///< all of it as compact JSON after overrides and expressions; kept beside a run
 };

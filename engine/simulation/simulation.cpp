@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "engine/base/input_file.h"
 #include "engine/io/checkpoint.h"
 #include "engine/simulation/meaning.h"
 #include "engine/simulation/memory.h"
@@ -251,7 +252,7 @@ Result<void> SimulationOf<Real>::save_to(const WriteBytes& write) const {
 
 template <class Real>
 Result<void> SimulationOf<Real>::load(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   if (!file) return Error{ErrorKind::kNoInput, "cannot be read; is the path right?", path};
   return load(file, path);
 }

@@ -1,5 +1,7 @@
 #include "engine/vdb/checksum.h"
 
+#include "engine/base/input_file.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -38,7 +40,7 @@ std::string VdbChecksum::tag() const {
 }
 
 Result<VdbOrigin> check_vdb(const std::string& path, ErrorKind damaged) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   if (!file) return Error{ErrorKind::kNoInput, std::string("cannot be opened: ") + std::strerror(errno), path};
   std::vector<char> block(1 << 20);
   std::string tag;

@@ -222,6 +222,24 @@ TEST_F(StudyCommand, SceneThatIsEditedMeanwhile_GivesNoRunsOfAnother) {
   EXPECT_EQ(read_json(path("out/study.json"))["points"][2]["state"], "complete") << "it is made again";
 }
 
+TEST_F(StudyCommand, MeshThatWasChanged_MakesOtherRuns) {
+  const auto wedge = [&](double top) {
+    std::ofstream(path("wedge.obj")) << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0 " << top
+                                     << " 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
+  };
+  const std::string scene =
+      tiny_scene(R"(, "sinks": [{"name": "drain", "shape": {"type": "mesh", "file": "wedge.obj"}}])" +
+                 std::string(kStudy));
+  wedge(0.05);
+  ASSERT_EQ(study(scene, "out", {"--vary", "grid.transfer=apic,flip"}).code, 0);
+  EXPECT_THAT(study(scene, "out", {"--vary", "grid.transfer=apic,flip"}).out, HasSubstr("2 of 2 runs"));
+  wedge(0.09);
+  const Finished other = study(scene, "out", {"--vary", "grid.transfer=apic,flip"});
+  ASSERT_EQ(other.code, 0) << other.err;
+  EXPECT_THAT(other.out, Not(HasSubstr("have been made before")));
+  EXPECT_THAT(run_files("out"), SizeIs(4));
+}
+
 TEST_F(StudyCommand, RefusedAndFailedPoints_AreKept) {
   // A force field is no limit of the step, so such a one throws particles over cells even in an eighth of it.
   const Words words{"--vary", "grid.transfer=apic,no_such", "--vary",

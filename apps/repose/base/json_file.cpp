@@ -6,11 +6,12 @@
 #include <fstream>
 
 #include "engine/base/caught.h"
+#include "engine/base/input_file.h"
 
 namespace repose {
 
 Result<Json::Value> read_json_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = open_input(path);
   if (!file) return Error{ErrorKind::kNoInput, "cannot be read", path};
   Json::CharReaderBuilder builder;
   builder["collectComments"] = false;
