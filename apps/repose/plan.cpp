@@ -1,11 +1,14 @@
 // Repose: `repose plan`: what a scene would do, before it does it.
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 #include "apps/repose/command.h"
 #include "apps/repose/measure.h"
 #include "engine/compiler/figures.h"
+#include "engine/effect/solid.h"
+#include "engine/geometry/mesh_sequence.h"
 #include "engine/plan/time_step.h"
 
 namespace repose {
@@ -102,6 +105,33 @@ void print_memory(const Simulation& simulation, double emission) {
   line("  writing", writing, "   while a frame is written");
 }
 
+/// What moving meshes take beside the steps: a level set for each file that a run passes, s. It is measured
+/// here, by two files of each in the middle of the run.
+struct LevelSets {
+  double files = 0.0, seconds = 0.0;
+};
+LevelSets level_sets_of(const Simulation& simulation, double duration) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kMeasured = 2;
+  LevelSets all;
+  for (const Solid& solid : simulation.solids()) {
+    if (solid.sequence == nullptr || solid.sequence->is_led()) continue;
+    const MeshSequence& sequence = *solid.sequence;
+    const double files = sequence.moving_share(0.0, duration) * duration * sequence.rate();
+    if (!(files > 0.0)) continue;
+    double time = 0.5 * duration;
+    while (time > 0.0 && !(sequence.fastest(time, time + kMeasured / sequence.rate()) > 0.0))
+      time -= 1.0 / sequence.rate();
+    time = std::max(0.0, time);
+    sequence.at(time);
+    const Clock::time_point begun = Clock::now();
+    for (int file = 1; file <= kMeasured; ++file) sequence.at(time + file / sequence.rate());
+    all.files += files;
+    all.seconds += files * std::chrono::duration<double>(Clock::now() - begun).count() / kMeasured;
+  }
+  return all;
+}
+
 void print_forecast(const Scene& scene, Simulation& simulation) {
   const auto particles = static_cast<double>(simulation.particles());
   const IntegratorChoice& integrator = simulation.integrator();
@@ -121,9 +151,17 @@ void print_forecast(const Scene& scene, Simulation& simulation) {
   const std::size_t solver = integrator.implicit ? kSolverNumbers * real : 0;
   print_memory(simulation, 1.125 * emitted * static_cast<double>(bytes_per_particle(scene) + solver));
   std::printf("  steps               about %.0f of %.3g s for %.3g s\n", steps, dt, duration);
+  const LevelSets level_sets = level_sets_of(simulation, duration);
   std::printf("  time                about %.0f s on %d thread%s\n",
-              steps * mean * nanoseconds * 1e-9 / simulation.threads(), simulation.threads(),
-              simulation.threads() == 1 ? "" : "s");
+              steps * mean * nanoseconds * 1e-9 / simulation.threads() + level_sets.seconds,
+              simulation.threads(), simulation.threads() == 1 ? "" : "s");
+  if (level_sets.files > 0.0) {
+    std::printf(
+        "                      of it %.2g s for the level sets of moving meshes: %.0f files, %.2g s each, as "
+        "two\n"
+        "                      took now\n",
+        level_sets.seconds, level_sets.files, level_sets.seconds / level_sets.files);
+  }
   const double cells = cells_along_an_edge(scene, simulation.diagnose().volume);
   if (const double error = outline_error(scene, cells); error > 0.0) {
     std::printf(

@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-KINDS = ("*.h", "*.cpp", "*.c", "CMakeLists.txt", "*.cmake")
+OF_STEPS = ("kernels", "engine", "cmake", "CMakeLists.txt", "CMakePresets.json")
 
 
 def git(root, *words):
@@ -32,7 +32,7 @@ def changed_since_accepted(baselines):
     accepted = git(folder, "log", "-1", "--format=%H", "--", folder).strip()
     if not accepted:
         return {}
-    return of_difference(git(root, "diff", "-U0", accepted, "--", *KINDS))
+    return of_difference(git(root, "diff", "-U0", accepted, "--", *OF_STEPS))
 
 
 def is_changed(place, changed):

@@ -120,6 +120,10 @@ inline constexpr TableHandle<"contacts", ContactTables> kContactTables;
 /// deforms, of which nobody knows how deep it lay before.
 inline constexpr double kDepthHeld = 0.5, kMostPush = 0.1;
 
+/// A signed distance changes by no more than this times the way; that of a level set, between its nodes, by
+/// more than the way itself.
+inline constexpr double kSteepestDistance = 2.0;
+
 template <class Real>
 template <class Access>
 void ContactTables<Real>::hold(const Access& at) const {
@@ -154,9 +158,16 @@ void ContactTables<Real>::hold_at(const Access& at, const Distance& distance, co
   const auto v = at.read(kMovingVelocity);
   Motion<Real>& motion = at.write(kMotion);
   const double dx = at.spacing(), dt = static_cast<double>(at.dt());
+  // To ask a mesh is dear, and most particles are neighbours of one that is clear of the solid by more than
+  // they are apart.
+  Vec3 clear_at = Vec3::Zero();
+  double clear = 0.0;
   for (std::size_t p = 0; p < at.count(); ++p) {
     const Vec3 end = in_plane(at.world(Vec3(double(x[0][p]), double(x[1][p]), double(x[2][p]))), flat_axis_);
+    if (kSteepestDistance * (end - clear_at).norm() < clear) continue;
     const double depth = -*distance(end);
+    clear_at = end;
+    clear = -depth;
     if (depth <= kDepthHeld * dx) continue;
     const Vec3 way = dt * Vec3(double(v[0][p]), double(v[1][p]), double(v[2][p]));
     const std::optional<double> was = before(in_plane(end - way, flat_axis_));

@@ -105,6 +105,23 @@ TEST_F(Command, Plan_TellsTheErrorOfTheGrid) {
   EXPECT_EQ(error_planned(rubber.out), 0.0) << "rubber makes no heaps";
 }
 
+TEST_F(Command, Plan_TellsWhatMovingMeshesTake) {
+  for (int file = 1; file <= 4; ++file) {
+    const double x = 0.01 * file;
+    std::ofstream(path("wedge.000" + std::to_string(file) + ".obj"))
+        << "v " << x << " 0 0\nv " << x + 0.3 << " 0 0\nv " << x << " 0 0.3\nv " << x
+        << " 0.3 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
+  }
+  const std::string wedge = R"({"name": "wedge", "shape": {"type": "mesh", "file": "wedge.####.obj"},
+                               "frames": {"count": 4, "rate": 50}})";
+  const std::string scene = tiny_scene();
+  const Finished moving = repose({"plan", scene, "--set", "colliders=[" + wedge + "]"});
+  ASSERT_EQ(moving.code, 0) << moving.err;
+  EXPECT_THAT(moving.out, HasSubstr("for the level sets of moving meshes: 3 files, "))
+      << "of 0.06 s, at 50 a second";
+  EXPECT_THAT(repose({"plan", scene}).out, Not(HasSubstr("level sets")));
+}
+
 TEST_F(Command, PlanWithoutColliders_HasNoPassForThem) {
   const Finished plan = repose({"plan", tiny_scene(), "--set", "colliders=[]"});
   EXPECT_THAT(plan.out, HasSubstr("no entry in 'colliders'"));
