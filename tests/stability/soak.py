@@ -43,7 +43,7 @@ def looks(process, log):
             seen.append((len(list(log.parent.glob("soak.*.ply"))), resident, len(os.listdir(f"/proc/{process.pid}/fd"))))
         except (OSError, IndexError):  # it has ended
             break
-        time.sleep(0.05)
+        time.sleep(0.01)
     return seen
 
 
@@ -61,7 +61,7 @@ def main():
         sys.exit(f"{steps} steps, {written} frames: fewer than were asked for")
     warm = [look for look in seen if FRAMES // 5 <= look[0] < 2 * FRAMES // 5]
     rest = [look for look in seen if 2 * FRAMES // 5 <= look[0] < FRAMES]
-    if len(warm) < 3 or len(rest) < 30:
+    if len(warm) < 5 or len(rest) < 30:
         sys.exit(f"looked {len(warm)} and {len(rest)} times: too seldom")
     # Files that are being written come and go, with what they need.
     (memory, open_files), (memory_then, open_then) = ([min(look[k] for look in looks) for k in (1, 2)]
