@@ -16,6 +16,7 @@ import time
 FRAMES, STEPS = 20, 100000
 RATE = 25  # frames per second
 MOST_GROWTH = 0.01
+TRIES = 4
 SCENE = {
     "repose": 1, "name": "soak", "grid": {"spacing": 0.01, "plane_strain": "z"},
     "time": {"frames_per_second": RATE, "frames": FRAMES, "max_step": FRAMES / RATE / STEPS},
@@ -47,7 +48,8 @@ def looks(process, log):
     return seen
 
 
-def main():
+def grows():
+    """Whether a run takes more at its end than soon after its start."""
     with tempfile.TemporaryDirectory() as folder:
         scene, out = pathlib.Path(folder, "soak.json"), pathlib.Path(folder, "out")
         scene.write_text(json.dumps(SCENE))
@@ -69,7 +71,12 @@ def main():
     growth, more = memory_then / memory - 1.0, open_then - open_files
     print(f"{frames[2 * FRAMES // 5]['particles']} and {frames[-1]['particles']} particles")
     print(f"{steps} steps, {len(frames)} frames: memory {memory:g} kB, {100 * growth:+.2f} %; descriptors {more:+g}")
-    if growth > MOST_GROWTH or more > 0:
+    return growth > MOST_GROWTH or more > 0
+
+
+def main():
+    # When an allocator gives pages back differs from run to run, by 1 % one time in seven; what piles up does so each time.
+    if all(grows() for _ in range(TRIES)):
         sys.exit("something piles up")
 
 
