@@ -157,7 +157,7 @@ int figures_command(const FiguresArguments& arguments) {
   if (!scene) return fail(scene.error());
   RunResult result;
   result.build = program_build();
-  result.scene = scene_hash(*scene);
+  result.inputs = inputs_of(*scene);
   const auto made = make_run(*scene, arguments, result);
   if (!made) {
     result.code = static_cast<int>(made.error().kind);

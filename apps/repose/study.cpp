@@ -83,7 +83,7 @@ class Study {
 bool Study::take_finished(const Job& job) {
   auto result = read_run_result(file_of(job));
   if (!result || !is_final(result->code)) return false;
-  if (result->complete() && result->scene != job.scene) return false;
+  if (result->complete() && result->inputs != job.inputs) return false;
   if (result->build != program_build() && !arguments_.any_build) return false;
   keep(job, std::move(*result));
   return true;
@@ -142,11 +142,12 @@ void Study::ended(const ChildEnd& end) {
     result.code = -1;
     result.words = status_text(end.status) + (end.words.empty() ? "" : ": " + end.words);
   }
-  // A run reads the scene's file by itself.
-  if (result.complete() && result.scene != job.scene) {
+  // A run reads the scene and its files by itself.
+  if (result.complete() && result.inputs != job.inputs) {
     result = RunResult();
     result.code = -1;
-    result.words = "the scene's file has changed since the study began; give the command again";
+    result.words =
+        "the scene's file, or one that it names, has changed since the study began; give the command again";
   }
   std::error_code ignored;
   if (!is_final(result.code)) fs::remove(file_of(job), ignored);

@@ -280,7 +280,7 @@ void SetUp::list_jobs() {
         job.overrides.insert(job.overrides.end(), seeded.begin(), seeded.end());
         const auto scene = read(plan.points[k], seeded);
         if (!scene) continue;  // as it was a moment ago it could be read
-        job.scene = scene_hash(*scene);
+        job.inputs = inputs_of(*scene);
         job.key = fingerprint(run_text(*scene) + common) + "." + std::to_string(r);
         if (most > 1) job.text += ", seed " + std::to_string(s + 1);
         if (repeat > 1) job.text += ", time " + std::to_string(r + 1);
@@ -291,6 +291,10 @@ void SetUp::list_jobs() {
 }
 
 }  // namespace
+
+std::string inputs_of(const Scene& scene) {
+  return fingerprint(scene.identity + contents_of_files(scene));
+}
 
 std::vector<Figure> figures_of(const StudyDescription& study, const Scene& scene) {
   if (!study.figures.empty()) return study.figures;

@@ -20,12 +20,15 @@ std::vector<Figure> figures_of(const StudyDescription& study, const Scene& scene
 /// Fingerprint of this program.
 const std::string& program_build();
 
+/// Fingerprint of a scene and of what the files that it names held when this process first asked.
+std::string inputs_of(const Scene& scene);
+
 /// One run to make.
 struct Job {
   std::size_t point = 0;
   int seed = 0, repeat = 0;
   std::string key;                     ///< by which it is found again
-  std::string scene;                   ///< hash of the scene that it shall run
+  std::string inputs;                  ///< inputs_of() the scene that it shall run
   std::vector<std::string> overrides;  ///< as --set has them
   double cost = 1.0;                   ///< about, over that of the others
   std::string text;                    ///< point and seed, for people

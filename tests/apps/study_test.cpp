@@ -238,6 +238,15 @@ TEST_F(StudyCommand, MeshThatWasChanged_MakesOtherRuns) {
   ASSERT_EQ(other.code, 0) << other.err;
   EXPECT_THAT(other.out, Not(HasSubstr("have been made before")));
   EXPECT_THAT(run_files("out"), SizeIs(4));
+  // While a study goes on, too.
+  const auto edit = [&, told = false](pid_t, const std::string&) mutable {
+    if (!std::exchange(told, true)) wedge(0.07);
+  };
+  const Words words{"--vary", "grid.transfer=apic,flip,aflip", "--set", "time.frames=40"};
+  ASSERT_EQ(study(scene, "meanwhile", words, edit).code, 0);
+  const Json::Value last = read_json(path("meanwhile/study.json"))["points"][2];
+  EXPECT_EQ(last["state"], "gave out");
+  EXPECT_THAT(last["words"].asString(), HasSubstr("has changed"));
 }
 
 TEST_F(StudyCommand, RefusedAndFailedPoints_AreKept) {

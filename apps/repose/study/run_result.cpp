@@ -22,7 +22,7 @@ bool is_result(const Json::Value& json) {
   if (!json.isObject() || !json["code"].isInt() || !json["steps"].isInt64() || !json["threads"].isInt() ||
       !json["particles"].isUInt64() || !json["figures"].isObject())
     return false;
-  for (const char* key : {"words", "build", "scene", "hash", "target"}) {
+  for (const char* key : {"words", "build", "inputs", "hash", "target"}) {
     if (!json[key].isString()) return false;
   }
   for (const char* key : {"spacing", "time", "seconds", "peak_bytes"}) {
@@ -54,7 +54,7 @@ Json::Value to_json(const RunResult& run) {
   json["code"] = run.code;
   json["words"] = run.words;
   json["build"] = run.build;
-  json["scene"] = run.scene;
+  json["inputs"] = run.inputs;
   json["hash"] = run.hash;
   json["spacing"] = run.spacing;
   json["time"] = run.time;
@@ -85,7 +85,7 @@ Result<RunResult> read_run_result(const std::string& path) {
   run.code = json["code"].asInt();
   run.words = json["words"].asString();
   run.build = json["build"].asString();
-  run.scene = json["scene"].asString();
+  run.inputs = json["inputs"].asString();
   run.hash = json["hash"].asString();
   run.spacing = json["spacing"].asDouble();
   run.time = json["time"].asDouble();

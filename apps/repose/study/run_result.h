@@ -16,7 +16,7 @@ namespace repose {
 struct RunResult {
   int code = 0;          ///< 0, or the exit code of what ended it: 65, 66, 70, 78; -1: it left no word
   std::string words;     ///< why it ended before its end
-  std::string scene;     ///< hash of the scene that was run
+  std::string inputs;    ///< fingerprint of the scene that was run, and of the files that it names
   std::string build;     ///< of the program
   std::string hash;      ///< of the last state
   double spacing = 0.0;  ///< dx, m
