@@ -12,14 +12,14 @@ import json
 import math
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
 import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "tests"))
+sys.path[:0] = [str(HERE / "regress"), str(HERE.parent / "tests")]
+import measure
 from marked_page import put_between, table
 
 BEGIN, END = "<!-- forecast: begin -->", "<!-- forecast: end -->"
@@ -35,14 +35,8 @@ BLOCK_CELLS = 4
 Block = collections.namedtuple("Block", "colour particles")
 
 
-class CannotMeasure(Exception):
-    pass
-
-
 def run(words):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise CannotMeasure(f"{words}: exit code {done.returncode}\n{done.stderr[-2000:]}")
+    measure.run([str(word) for word in words])
 
 
 def scene_path(name):
@@ -166,7 +160,7 @@ def main():
     options = parser.parse_args()
     try:
         lines = forecast(options)
-    except (CannotMeasure, OSError) as error:
+    except (measure.CannotMeasure, OSError) as error:
         print(f"forecast: could not measure: {error}", file=sys.stderr)
         return 2
     print("\n".join(lines))

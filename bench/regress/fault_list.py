@@ -40,7 +40,7 @@ FAULTS = [
   } wait;
   StepReport report;
 """,
-          "bare", r"\| slower \|", paired=True),
+          "bare", r"^\| bare \|.*\| slower \|", paired=True),
     Fault("allocation", "one allocation a step",
           "engine/step/stepper.cpp",
           "  const CleanFloatingPoint clean;\n  StepReport report;\n",

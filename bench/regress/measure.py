@@ -26,8 +26,8 @@ def run(words, **more):
     return done
 
 
-def arguments(case):
-    words = [SCENE, "--threads", "1", "--target", "avx2"]
+def arguments(case, threads=1):
+    words = [SCENE, "--threads", str(threads), "--target", "avx2"]
     for override in case.overrides:
         words += ["--set", override]
     return words

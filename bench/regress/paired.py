@@ -3,6 +3,7 @@
 What a machine that others share does to a program changes from one second to the next. Two programs on one core take
 turns every few milliseconds, so that whatever it does counts for both: of equal programs the ratios scatter by 1 %,
 where runs one after the other scatter by 7."""
+import contextlib
 import json
 import os
 import random
@@ -19,28 +20,28 @@ WALL_TIMES = 5
 
 
 def command(program, case, steps, threads=1):
-    words = [program, "bench", *measure.arguments(case), "--steps", str(steps)]
-    words[words.index("--threads") + 1] = str(threads)
-    return words
+    return [program, "bench", *measure.arguments(case, threads), "--steps", str(steps)]
 
 
 def processor_times(commands, core):
     """Of each of them, s; all run at once, on one core."""
-    running, seconds = {}, {}
-    for words in commands:
-        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                   preexec_fn=lambda: os.sched_setaffinity(0, {core}))
-        running[process.pid] = process
-    for process in running.values():
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        seconds[process.pid] = used.ru_utime + used.ru_stime
-    for process in running.values():
-        said = process.stderr.read()
-        process.stderr.close()
-        if process.returncode != 0:
-            raise measure.CannotMeasure(f"{' '.join(process.args)}: exit code {process.returncode}\n{said.decode()[-2000:]}")
-    return list(seconds.values())
+    seconds, failure = [], ""
+    with contextlib.ExitStack() as files:
+        running = []
+        for words in commands:
+            said = files.enter_context(tempfile.TemporaryFile("w+"))
+            running.append((subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said,
+                                             preexec_fn=lambda: os.sched_setaffinity(0, {core})), said))
+        for process, said in running:
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            seconds.append(used.ru_utime + used.ru_stime)
+            if process.returncode != 0:
+                said.seek(0)
+                failure = f"{' '.join(process.args)}: exit code {process.returncode}\n{said.read()[-2000:]}"
+    if failure:
+        raise measure.CannotMeasure(failure)
+    return seconds
 
 
 def ratio(base, head, case, pairs, seed=1):
