@@ -2,8 +2,8 @@
  * libraries (LD_PRELOAD). FAIL_NTH="KIND N" with KIND write, sync, rename, create or allocate; with N 0 none fails.
  * FAIL_NTH_COUNT names a file that then tells how many calls there were. FAIL_NTH_FOLDER: of files, only those whose
  * path has it. KIND site: the first allocation fails that is asked for from the place N, which stands for the callers;
- * the file then lists all places. Calls count from where main begins. An allocation that fails lets all later ones through; those of libblosc, which uses
- * what it gets without a look, never fail. */
+ * the file then lists all places. Calls count from where main begins. An allocation that fails lets all later ones
+ * through; those of libblosc, which uses what it gets without a look, never fail. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -2,9 +2,9 @@
 
 soak.py PROGRAM
 
-A drum turns sand, and over it a sink takes what a spout gives: particles begin, end and change blocks all the time; each frame
-writes points, a surface and a state. After two fifths of the run, resident memory may grow by 1 %, descriptors by none. (The
-log keeps some 10 kB of each frame, so there are few of these.)"""
+A drum turns sand, and over it a sink takes what a spout gives: particles begin, end and change blocks all the time. Each
+frame writes points, a surface and a state. After two fifths of the run, resident memory may grow by 1 %, descriptors by
+none. (The log keeps some 10 kB of each frame, so there are few of these.)"""
 import json
 import os
 import pathlib
@@ -35,13 +35,13 @@ SCENE = {
 }
 
 
-def looks(process, log):
+def looks(process, out):
     """(frames that are done, resident memory in kB, descriptors), until it ends."""
     seen = []
     while process.poll() is None:
         try:
             resident = int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") // 1024
-            seen.append((len(list(log.parent.glob("soak.*.ply"))), resident, len(os.listdir(f"/proc/{process.pid}/fd"))))
+            seen.append((len(list(out.glob("soak.*.ply"))), resident, len(os.listdir(f"/proc/{process.pid}/fd"))))
         except (OSError, IndexError):  # it has ended
             break
         time.sleep(0.01)
@@ -54,7 +54,7 @@ def grows():
         scene, out = pathlib.Path(folder, "soak.json"), pathlib.Path(folder, "out")
         scene.write_text(json.dumps(SCENE))
         process = subprocess.Popen([sys.argv[1], "run", scene, "--out", out, "--threads", "2", "--quiet"])
-        seen = looks(process, out / "run.json")
+        seen = looks(process, out)
         if process.wait() != 0:
             sys.exit(f"exit code {process.returncode}")
         frames = json.loads((out / "run.json").read_text())["frames"]
