@@ -159,7 +159,8 @@ void print_forecast(const Scene& scene, Simulation& simulation) {
     std::printf(
         "                      of it %.2g s for the level sets of moving meshes: %.0f files, %.2g s each, as "
         "two\n"
-        "                      took now\n",
+        "                      took now; what nodes and grains take that ask them is not in it, and may be "
+        "more\n",
         level_sets.seconds, level_sets.files, level_sets.seconds / level_sets.files);
   }
   const double cells = cells_along_an_edge(scene, simulation.diagnose().volume);
